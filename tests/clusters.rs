@@ -230,7 +230,10 @@ fn a_cluster_of_orbits_splits_at_the_scaled_pitchfork_of_two() {
             let off = (cell("period") - decimal(&known["period"])).abs();
             assert!(off <= cell("period_uncertainty"), "{special}");
             assert_eq!(split[column("name")], "branch point");
-            assert_eq!(split[column("note")], "cluster 1 splits");
+            let accurate = cell("driving_uncertainty") <= 1e-11 * cell("driving");
+            let note = split[column("note")].as_str();
+            let less = "cluster 1 splits; less accurate than asked for";
+            assert_eq!(note, if accurate { "cluster 1 splits" } else { less });
         }
         // The verdict changes there, which the subspace alone does not see.
         let table = csv(&fs::read_to_string(&rows).expect("a file"));

@@ -15,8 +15,22 @@ pub enum Change {
 }
 use Change::{Exempt, File, To, With};
 
-/// What is refused for every kind that is run here.
-pub const NEVER: [(&str, &str); 0] = [];
+/// What is refused for every kind that is run here: of two commands that share their options what is of orbits alone, what a law has none of, and all
+/// clusters where all steady states are found. What varies is given to no run of these kinds.
+pub const NEVER: [(&str, &str); 12] = [
+    ("branch equilibria", "crosscheck"),
+    ("branch equilibria", "doublings"),
+    ("branch equilibria", "period-guess"),
+    ("branch orbits", "driving"),
+    ("equilibria", "clusters"),
+    ("law", "clusters"),
+    ("law", "system"),
+    ("locus hopf", "crosscheck"),
+    ("locus hopf", "driving"),
+    ("locus hopf", "period-guess"),
+    ("locus hopf", "stiffness"),
+    ("locus hopf", "system"),
+];
 
 /// To what an option is changed, so that something must come of it; `None` where nobody has thought of that.
 pub fn change(command: &str, kind: Kind, option: &str) -> Option<Change> {
@@ -123,14 +137,14 @@ pub fn change(command: &str, kind: Kind, option: &str) -> Option<Change> {
         }),
         "grid" if system => To("a=1:1.1:2"),
         "grid" => To("healing_time=90:110:2"),
-        "in" if system => To("r,b --range b=2,3"),
+        "in" if system => To("s,r"),
         "in" => With(
             "--driving 190",
             "stiffness,healing_time --range healing_time=90,110",
         ),
         // The regime of a torus or of chaos alone: minutes.
         "lyapunov" if command == "sweep" => Exempt,
-        "lyapunov" => To(""),
+        "lyapunov" => With("--returns 60", ""),
         "max-points" => To("2"),
         // No point takes more than the least that is allowed, which tells a torus.
         "max-returns" => Exempt,
@@ -257,6 +271,14 @@ fn model_change(command: &str, kind: Kind, option: &str) -> Option<Change> {
         _ => command == "locus hopf" && kind == Unequal,
     };
     Some(match option {
+        "driving" if command == "branch equilibria" => With(
+            if si {
+                "--along residual_strength --from 1e-3 --to 2e-3 --driving 2e-4"
+            } else {
+                "--along healing_time --from 90 --to 110 --driving 200"
+            },
+            if si { "2.1e-4" } else { "210" },
+        ),
         "driving" => To(if si { "1.1e-5" } else { "11" }),
         "stiffness" if of_law => With(
             if si { "--driving 1e-5" } else { "--driving 10" },
@@ -270,6 +292,9 @@ fn model_change(command: &str, kind: Kind, option: &str) -> Option<Change> {
         } else {
             "roessler --in a,b"
         }),
+        "system" if command == "branch equilibria" && kind == System => {
+            With("--along b --from 2 --to 3", "roessler")
+        }
         "system" if kind == System => To(if command == "integrate" {
             "van-der-pol"
         } else {
@@ -284,7 +309,10 @@ fn model_change(command: &str, kind: Kind, option: &str) -> Option<Change> {
         "set" if kind == Many => To("residual_strength=2e-3"),
         "set" => To("healing_time=95"),
         "law" => To("slip"),
-        "interfaces" if of_law => With(if si { "--driving 1e-5" } else { "--driving 10" }, "1"),
+        "interfaces" if of_law => With(
+            if si { "--driving 1e-5" } else { "--driving 10" },
+            if kind == One { "2" } else { "1" },
+        ),
         "interfaces" if kind == Many => To("51"),
         "interfaces" if kind == Clusters => To("3"),
         "interfaces"

@@ -60,11 +60,7 @@ impl TextOrbitPlan {
         };
         let guess = |period| positive("period-guess", period);
         Ok(TextOrbitPlan {
-            start: orbit_start(
-                options.start.as_deref(),
-                symmetry(options, &model)?,
-                &model,
-            )?,
+            start: orbit_start(options.start.as_deref(), symmetry(options, &model)?, &model)?,
             period: options.period_guess.map(guess).transpose()?,
             second: second(options.crosscheck.as_deref(), &accuracy)?,
             second_is_asked: options.crosscheck.is_some(),
@@ -228,10 +224,13 @@ fn symmetry(options: &OrbitOptions, model: &TextModel) -> Result<Symmetry> {
         if slab.clusters().len() == 1 && symmetry == Symmetry::Asymmetric {
             return refused("what moves alike has nothing to differ from");
         }
-        if options.start.is_some() {
-            return refused(
-                "the orbit is the one near `start`, whatever its symmetry; give one of them",
-            );
+        if let Some(text) = &options.start {
+            let start = model.start(Some(text))?;
+            let alike = start.iter().skip(2).all(|state| *state == start[1]);
+            if alike != (symmetry == Symmetry::Symmetric) {
+                let how = if alike { "alike" } else { "apart" };
+                return refused(&format!("in `start` {text} the interfaces move {how}"));
+            }
         }
     }
     Ok(symmetry)
