@@ -42,7 +42,7 @@ pub trait ParametrisedField: Sync {
 }
 
 /// The projection across a direction.
-fn projection(along: &Vector) -> Matrix {
+pub(super) fn projection(along: &Vector) -> Matrix {
     let count = along.len();
     Matrix::identity(count, count) - along * along.transpose() / along.norm_squared()
 }

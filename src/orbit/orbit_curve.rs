@@ -135,8 +135,21 @@ impl<'c, 'f> Palc<'c, 'f> {
     ) -> Result<Self> {
         let conditions = settings.and(Condition::Plane(&direction, &site));
         let here = corrector.correct(site.clone(), &settings.free, &conditions, Goal::STEP)?;
+        Self::at(corrector, settings, here, &direction)
+    }
+
+    /// From an orbit of the curve itself.
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`] where the curve has no direction there.
+    pub(crate) fn at(
+        corrector: &'c mut Corrector<'f>,
+        settings: PalcSettings,
+        here: Regular,
+        direction: &TangentVector,
+    ) -> Result<Self> {
         let direction = settings
-            .direction(&here, &direction)
+            .direction(&here, direction)
             .ok_or_else(no_direction)?;
         let curve = OrbitCurve {
             corrector,

@@ -1,8 +1,8 @@
 //! A system whose equations were read, over one or two of its parameters.
 
-use super::family::ParametrisedField;
+use super::family::{ParametrisedField, projection};
 use crate::error::{Error, Result};
-use crate::field::place;
+use crate::field::{Matrix, Vector, place};
 use crate::integrate::AnyField;
 use crate::model::TextSystem;
 use std::borrow::Cow;
@@ -129,5 +129,12 @@ impl ParametrisedField for OverText<'_> {
         let [first, second] = [0, 1].map(|i| self.coordinates[i].scale(at[i]));
         let same = self.plane[0] == self.plane[1];
         [first, if same { 0.0 } else { second }]
+    }
+
+    /// In the units of the formulas as they were read.
+    fn across(&self, _: &Vector, flow: &Vector) -> Matrix {
+        let sizes = Vector::from_column_slice(self.system.sizes());
+        let outward = Matrix::from_diagonal(&sizes);
+        projection(&(&outward * flow)) * outward
     }
 }

@@ -5,7 +5,7 @@ use crate::field::{Matrix, Vector};
 use crate::integrate::AnyField;
 use crate::number::null_vector;
 use crate::orbit::{
-    ContinuationPoint, Corrector, Palc, PalcSettings, ShootingNodes, TangentVector,
+    Condition, ContinuationPoint, Corrector, Goal, Palc, PalcSettings, ShootingNodes, TangentVector,
 };
 use std::f64::consts::TAU;
 
@@ -20,9 +20,11 @@ pub(super) struct GeneralHopf {
     pub frequency: f64,
 }
 
-/// Nodes of a small orbit, and its size in units of 1 + |state|.
+/// Nodes of a small orbit, and its size where the branch begins; a part of that where the orbits are not yet ellipses, down to the least.
 const NODES: usize = 12;
-const FIRST: f64 = 0.01;
+const FIRST: f64 = 0.02;
+const SMALLER: f64 = 0.25;
+const LEAST: f64 = 1e-6;
 
 impl GeneralHopf {
     /// The ellipse of this size on which the linearised system turns: in the plane where J^2 = -omega^2.
@@ -48,15 +50,31 @@ impl GeneralHopf {
     /// Along the branch of orbits, from a small one outwards.
     ///
     /// # Errors
-    /// As of [`Palc::from`].
+    /// As of [`Palc::from`], for the smallest ones.
     pub fn palc<'c, 'f>(
         &self,
         corrector: &'c mut Corrector<'f>,
         settings: PalcSettings,
     ) -> Result<Palc<'c, 'f>> {
-        let size = FIRST * (1.0 + self.state.amax());
-        let shooting = self.ellipse(&corrector.family.field(self.at), size);
-        let shooting = shooting.ok_or(Error::NotConverged {
+        let mut size = FIRST;
+        loop {
+            let (site, outwards) = self.beside(&corrector.family.field(self.at), size)?;
+            let conditions = settings.and(Condition::Plane(&outwards, &site));
+            let found = corrector.correct(site.clone(), &settings.free, &conditions, Goal::STEP);
+            match found {
+                Err(error) if size < LEAST => return Err(error),
+                Err(_) => size *= SMALLER,
+                Ok(found) => return Palc::at(corrector, settings, found, &outwards),
+            }
+        }
+    }
+    /// The ellipse of this size, which is the first prediction of an orbit, and the direction in which it grows.
+    fn beside(
+        &self,
+        field: &AnyField<'_>,
+        size: f64,
+    ) -> Result<(ContinuationPoint, TangentVector)> {
+        let shooting = self.ellipse(field, size).ok_or(Error::NotConverged {
             what: "the plane of the small orbits beside a Hopf point",
             iterations: 0,
             residual: f64::INFINITY,
@@ -67,11 +85,10 @@ impl GeneralHopf {
             durations: vec![0.0; shooting.nodes.len()],
             parameters: [0.0; 2],
         };
-        // The ellipse itself is the first prediction.
         let site = ContinuationPoint {
             shooting,
             at: self.at,
         };
-        Palc::from(corrector, settings, site, outwards)
+        Ok((site, outwards))
     }
 }

@@ -151,7 +151,8 @@ impl<'s> GeneralBranchPlan<'s> {
             interchangeable: &[],
             equilibria: &|_| Ok(Vec::new()),
         };
-        following::crosscheck(&system, 1, one, method)
+        let unit = self.subject.unit_of_time();
+        following::crosscheck(&system, (1, unit), one, method)
     }
 
     /// Follows them, but those whose numbers are known.

@@ -192,7 +192,7 @@ pub fn general(following: &Following, known: &[usize]) -> GeneralFollowing {
 /// As of [`GeneralSystem::crosscheck`].
 pub fn crosscheck(
     system: &GeneralSystem<'_>,
-    free: usize,
+    (free, unit_of_time): (usize, f64),
     one: &GeneralRow,
     method: Choice,
 ) -> Result<Option<Vec<f64>>> {
@@ -206,6 +206,6 @@ pub fn crosscheck(
     };
     let parameters = one.parameters[..free].iter().zip(second);
     let parameters = parameters.map(|(first, second)| against(first.value, second));
-    let period = against(period.value, second[2]);
+    let period = against(period.value, second[2] * unit_of_time);
     Ok(Some(parameters.chain([period]).collect()))
 }

@@ -235,7 +235,8 @@ impl<'s> GeneralLocusPlan<'s> {
             interchangeable: &[],
             equilibria: &|_| Ok(Vec::new()),
         };
-        following::crosscheck(&system, 2, one, method)
+        let unit = self.subject.unit_of_time();
+        following::crosscheck(&system, (2, unit), one, method)
     }
 
     /// What is said where no curve is found.

@@ -102,6 +102,16 @@ pub trait Subject: Described + Sync {
         Ok(Vec::new())
     }
 
+    /// The unit of time in which it is followed, in its own.
+    fn unit_of_time(&self) -> f64 {
+        1.0
+    }
+
+    /// The length of a direction, in its own units, of states in the units in which it is followed.
+    fn length(&self, direction: &Vector) -> f64 {
+        direction.norm()
+    }
+
     /// The range of a parameter where none is given, in the user's units; `None` where one must be given.
     fn default_range(&self, name: &str) -> Option<(f64, f64)>;
 

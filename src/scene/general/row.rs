@@ -7,10 +7,12 @@ use crate::bifurcation::orbits::SpecialOrbit;
 use crate::bifurcation::{Criticality, Label};
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::Result;
-use crate::number::Uncertain;
+use crate::field::{Matrix, Vector};
+use crate::number::{Uncertain, null_vector};
 use crate::orbit::ParametrisedField;
 use crate::scene::column::{CellValue, Column};
 use crate::scene::units::{Quantity, Units};
+use std::f64::consts::TAU;
 
 /// What rows are of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -75,9 +77,14 @@ impl GeneralRow {
         point: GeneralPoint,
     ) -> Result<Self> {
         let numbers = subject.told(family, &point)?;
+        let time = subject.unit_of_time();
+        // |q|^2 of the eigenvector at a Hopf point, where it is 1 in the units in which it is followed.
+        let square = oscillation(family, &point).map_or(1.0, |parts| {
+            parts.map(|part| subject.length(&part).powi(2)).iter().sum()
+        });
         let exponents: Vec<f64> = match &point.solution {
             GeneralSolution::Equilibrium { eigenvalues, .. } => {
-                eigenvalues.iter().map(|z| z.re).collect()
+                eigenvalues.iter().map(|z| z.re / time).collect()
             }
             GeneralSolution::Orbit {
                 log_multipliers, ..
@@ -94,15 +101,17 @@ impl GeneralRow {
             number: point.number,
             parameters,
             numbers,
-            period: point.period,
+            period: point
+                .period
+                .map(|period| Uncertain::new(period.value * time, period.uncertainty * time)),
             exponents: [0, 1].map(|i| exponents.get(i).copied().filter(|x| x.is_finite())),
             within: point.within.iter().map(|one| one.ln_abs.value).collect(),
             angle_over_pi: point.angle_over_pi,
             crossing: point.crossing,
             saddle_node: point.saddle_node,
             criticality: point.criticality,
-            coefficient: point.coefficient,
-            coefficient_uncertainty: point.coefficient_uncertainty,
+            coefficient: point.coefficient.map(|x| x / square),
+            coefficient_uncertainty: point.coefficient_uncertainty.map(|x| x / square),
             verdict: (!kind.curve).then(|| point.verdict()),
             label: point.label,
             note: point.note,
@@ -273,6 +282,20 @@ impl GeneralRow {
             orbit: None,
         })
     }
+}
+
+/// The real and imaginary parts of the eigenvector q, with <q, q> = 1, of the oscillation at a Hopf point.
+fn oscillation(family: &dyn ParametrisedField, point: &GeneralPoint) -> Option<[Vector; 2]> {
+    let GeneralSolution::Equilibrium { state, .. } = &point.solution else {
+        return None;
+    };
+    let frequency = TAU / point.period?.value;
+    let jacobian = family.field(point.at).jacobian(state);
+    let turned = Matrix::identity(state.len(), state.len()) * frequency.powi(2);
+    let along = null_vector(&jacobian * &jacobian + turned)?;
+    let across = jacobian * &along / frequency;
+    let length = along.norm().hypot(across.norm());
+    Some([along, across].map(|part| part / length))
 }
 
 fn criticality() -> Column<GeneralRow> {

@@ -14,7 +14,9 @@ use crate::orbit::{
 };
 use crate::scene::following;
 use crate::scene::system::Described;
-use crate::scene::text::{SearchPlace, TextEquilibriaPlan, TextModel, TextSlab, orbit_start};
+use crate::scene::text::{
+    MotionUnits, SearchPlace, TextEquilibriaPlan, TextModel, TextSlab, orbit_start,
+};
 use crate::scene::units::{Quantity, Units};
 use serde_json::{Map, Value};
 use std::borrow::Cow;
@@ -24,6 +26,10 @@ use std::borrow::Cow;
 pub struct TextSubject {
     /// The system.
     pub model: TextModel,
+    /// The units in which it is followed.
+    units: MotionUnits,
+    /// The equations in these.
+    system: TextSystem,
     /// Where equilibria are looked for; of interfaces, where nothing is said, among all their steady states.
     pub place: Option<SearchPlace>,
     /// A point at or near an orbit and the period, roughly.
@@ -80,7 +86,21 @@ impl TextSubject {
             }
             (None, near) => Some(SearchPlace::Near(model.start(near)?)),
         };
+        let start = match (&orbit, &place) {
+            (Some((start, _)), _) | (None, Some(SearchPlace::Near(start))) => Some(start.clone()),
+            _ => model.start(None).ok(),
+        };
+        let system = &model.system;
+        let units = match start {
+            Some(start) => MotionUnits::of(&model, &start)?,
+            None => MotionUnits::given(system.states().len()),
+        };
         Ok(TextSubject {
+            system: match model.slab {
+                Some(_) => system.clone(),
+                None => units.inward_system(system)?,
+            },
+            units,
             model,
             place,
             orbit,
@@ -88,7 +108,11 @@ impl TextSubject {
     }
 
     fn at(&self, values: &[(&str, f64)]) -> Result<TextSystem> {
-        let mut system = self.model.system.clone();
+        Self::set(&self.model.system, values)
+    }
+
+    fn set(system: &TextSystem, values: &[(&str, f64)]) -> Result<TextSystem> {
+        let mut system = system.clone();
         for &(name, value) in values {
             system.set(name, value)?;
         }
@@ -112,7 +136,7 @@ impl Subject for TextSubject {
         names: &[&str],
         coordinates: [Coordinate; 2],
     ) -> Result<Box<dyn ParametrisedField + 's>> {
-        let system = &self.model.system;
+        let system = &self.system;
         Ok(match *names {
             [first, second] => Box::new(OverText::two(system, [first, second], coordinates)?),
             [only] => Box::new(OverText::one(system, only, coordinates[0])?),
@@ -136,7 +160,7 @@ impl Subject for TextSubject {
         };
         let state = found.iter().map(|one| one.state.iter().map(|x| x.value));
         Ok(state
-            .map(|state| Vector::from_vec(state.collect()))
+            .map(|state| self.units.inward(&Vector::from_vec(state.collect())))
             .collect())
     }
 
@@ -144,9 +168,12 @@ impl Subject for TextSubject {
         let Some((start, period)) = &self.orbit else {
             return Ok(None);
         };
-        let system = self.at(values)?;
-        let field = AnyField::of_text(Cow::Owned(system))?;
-        let found = find_from(&field, start, *period, &OrbitAccuracy::unchecked())?;
+        let field = AnyField::of_text(Cow::Owned(Self::set(&self.system, values)?))?;
+        let (start, period) = (
+            self.units.inward(start),
+            period.map(|t| t / self.units.time),
+        );
+        let found = find_from(&field, &start, period, &OrbitAccuracy::unchecked())?;
         Ok(Some(found.orbit.beginning()))
     }
 
@@ -154,7 +181,9 @@ impl Subject for TextSubject {
         let search = || -> Result<_> {
             let model = self.model.with(self.at(values)?);
             let start = orbit_start(None, Symmetry::Symmetric, &model)?;
-            find_from(&model.field()?, &start, None, &OrbitAccuracy::unchecked())
+            let field = AnyField::of_text(Cow::Owned(Self::set(&self.system, values)?))?;
+            let start = self.units.inward(&start);
+            find_from(&field, &start, None, &OrbitAccuracy::unchecked())
         };
         search().map_or(Vec::new(), FoundOrbit::beginnings)
     }
@@ -231,11 +260,24 @@ impl Subject for TextSubject {
 
     fn told(&self, family: &dyn ParametrisedField, point: &GeneralPoint) -> Result<Vec<f64>> {
         match &point.solution {
-            GeneralSolution::Equilibrium { state, .. } => Ok(state.as_slice().to_vec()),
+            GeneralSolution::Equilibrium { state, .. } => {
+                Ok(self.units.outward(state).as_slice().to_vec())
+            }
             GeneralSolution::Orbit { shooting, .. } => {
                 let ranges = ranges(&family.field(point.at), shooting)?;
-                Ok(ranges.into_iter().flat_map(|(a, b)| [a, b]).collect())
+                let ranges = ranges.into_iter().zip(&self.units.sizes);
+                Ok(ranges
+                    .flat_map(|((a, b), size)| [a * size, b * size])
+                    .collect())
             }
         }
+    }
+
+    fn unit_of_time(&self) -> f64 {
+        self.units.time
+    }
+
+    fn length(&self, direction: &Vector) -> f64 {
+        self.units.outward(direction).norm()
     }
 }

@@ -1,6 +1,7 @@
 //! A periodic orbit of a system of one's own.
 
 use super::model::TextModel;
+use super::motion::MotionUnits;
 use super::plan::{TextPlan, text_columns};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
@@ -8,7 +9,7 @@ use crate::field::Vector;
 use crate::friction::positive;
 #[cfg(not(feature = "sundials"))]
 use crate::integrate::RosenbrockMethod;
-use crate::integrate::{Choice, Tolerances};
+use crate::integrate::{AnyField, Choice, Tolerances};
 use crate::orbit::{
     AlongArcs, Crosscheck, FoundOrbit, Orbit, OrbitAccuracy, ShootingNodes, crosscheck_of,
     find_from,
@@ -25,12 +26,16 @@ use crate::sundials::MultistepMethod;
 pub struct TextOrbitPlan {
     /// The system.
     pub model: TextModel,
+    /// The units in which it is looked for.
+    units: MotionUnits,
     /// At or near the orbit.
     pub start: Vector,
     /// The period, roughly, where it is given.
     pub period: Option<f64>,
     /// By which method.
     pub accuracy: OrbitAccuracy,
+    /// Whether the absolute tolerance is the user's, in the system's own units.
+    atol_is_given: bool,
     /// By which second method once more.
     pub second: Option<OrbitAccuracy>,
     /// Whether the user names it.
@@ -59,8 +64,11 @@ impl TextOrbitPlan {
             ..usual
         };
         let guess = |period| positive("period-guess", period);
+        let start = orbit_start(options.start.as_deref(), symmetry(options, &model)?, &model)?;
         Ok(TextOrbitPlan {
-            start: orbit_start(options.start.as_deref(), symmetry(options, &model)?, &model)?,
+            units: MotionUnits::of(&model, &start)?,
+            atol_is_given: options.atol.is_some(),
+            start,
             period: options.period_guess.map(guess).transpose()?,
             second: second(options.crosscheck.as_deref(), &accuracy)?,
             second_is_asked: options.crosscheck.is_some(),
@@ -101,16 +109,27 @@ impl TextOrbitPlan {
     /// # Errors
     /// Those of [`find_from`].
     pub fn find(&self) -> Result<FoundOrbit> {
-        let mut found = find_from(
-            &self.model.field()?,
-            &self.start,
-            self.period,
-            &self.accuracy,
+        let units = &self.units;
+        let found = find_from(
+            &self.field()?,
+            &units.inward(&self.start),
+            self.period.map(|period| period / units.time),
+            &units.inward_accuracy(self.accuracy, self.atol_is_given),
         )?;
+        let others = found.others.into_iter();
+        let mut found = FoundOrbit {
+            orbit: units.outward_orbit(found.orbit),
+            others: others.map(|other| units.outward_orbit(other)).collect(),
+        };
         for orbit in std::iter::once(&mut found.orbit).chain(&mut found.others) {
             self.complete(orbit, &self.accuracy)?;
         }
         Ok(found)
+    }
+
+    /// The field in the units in which the orbit is looked for.
+    fn field(&self) -> Result<AnyField<'_>> {
+        self.units.field(&self.model)
     }
 
     /// With its multipliers within clusters, by the method that it was found by.
@@ -183,7 +202,6 @@ impl TextOrbitPlan {
     /// # Errors
     /// Those of [`crosscheck_of`].
     pub fn crosscheck(&self, orbit: &Orbit) -> Result<Option<Crosscheck>> {
-        let field = self.model.field()?;
         let (_, Some(second)) = self.accuracies(orbit) else {
             return Ok(None);
         };
@@ -191,7 +209,10 @@ impl TextOrbitPlan {
             true => second,
             false => worth(second, orbit),
         };
-        let mut again = crosscheck_of(&field, orbit, &second)?;
+        let units = &self.units;
+        let inward = units.inward_accuracy(second, self.atol_is_given);
+        let again = crosscheck_of(&self.field()?, &units.inward_orbit(orbit), &inward)?;
+        let mut again = units.outward_crosscheck(again);
         self.complete(&mut again.orbit, &second)?;
         Ok(Some(again))
     }

@@ -8,6 +8,7 @@ mod function;
 mod own_factor;
 mod ratios;
 mod signed_powers;
+mod units;
 
 pub use function::Function;
 

@@ -20,6 +20,8 @@ pub struct TextSystem {
     states: Vec<&'static str>,
     names: Vec<&'static str>,
     parameters: Vec<f64>,
+    /// The units of the states, in those of the formulas as they were read.
+    sizes: Vec<f64>,
 }
 
 impl TextSystem {
@@ -41,6 +43,7 @@ impl TextSystem {
             states: states.iter().map(|name| kept(name)).collect(),
             names: parameters.iter().map(|(name, _)| kept(name)).collect(),
             parameters: parameters.iter().map(|(_, value)| *value).collect(),
+            sizes: vec![1.0; states.len()],
         })
     }
 
@@ -57,6 +60,28 @@ impl TextSystem {
             slip_rates: Some(Arc::new(slip_rates)),
             ..Self::new(rates, states, parameters)?
         })
+    }
+
+    /// The same in other units of its states and of time, which are powers of two: all numbers are the same but for these factors.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where the formulas become too long.
+    ///
+    /// # Panics
+    /// Of interfaces, whose states have units.
+    pub fn in_units(&self, sizes: &[f64], time: f64) -> Result<Self> {
+        assert!(self.slip_rates.is_none(), "interfaces have their own units");
+        let rates = self.rates.in_units(sizes, time, self.names.len())?;
+        Ok(TextSystem {
+            rates: Arc::new(rates),
+            sizes: self.sizes.iter().zip(sizes).map(|(x, y)| x * y).collect(),
+            ..self.clone()
+        })
+    }
+
+    /// The units of the states, in those of the formulas as they were read.
+    pub fn sizes(&self) -> &[f64] {
+        &self.sizes
     }
 
     /// The names of the variables.
