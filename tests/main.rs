@@ -13,6 +13,7 @@ mod drawn;
 
 mod any_parameter;
 mod any_parameter_slab;
+mod any_units;
 mod arcs;
 mod attraction;
 mod batch;

@@ -66,7 +66,7 @@ const OFF: f64 = 0.03;
 /// The least cosine between the directions before and after a step.
 const TURN: f64 = 0.8;
 /// Progress of the last steps, as a part of the way.
-const PROGRESS: f64 = 1e-3;
+const PROGRESS: f64 = 5e-4;
 /// An arc of which a step would leave less than this vanishes.
 const SHRUNK: f64 = 0.08;
 /// A slope along a parameter that is small enough where it has no condition of its own.

@@ -26,6 +26,9 @@ pub struct ShootingMesh {
     pub steps: f64,
     /// The change of ln |volume| on an arc.
     pub volume: f64,
+    /// How far an arc goes at least, in parts of the extent of a variable and of the period together. Where a stiff orbit takes many steps on
+    /// the spot, a small displacement would be many times the duration of a shorter arc.
+    pub way: f64,
 }
 
 impl ShootingMesh {
@@ -34,6 +37,7 @@ impl ShootingMesh {
         nodes: (3, 128),
         steps: 12.0,
         volume: 3.0,
+        way: 0.0,
     };
     /// For orbits that are to move far: along short arcs Newton's method converges from farther away, and no node's plane is
     /// missed by a smaller orbit as soon.
@@ -41,6 +45,7 @@ impl ShootingMesh {
         nodes: (12, 256),
         steps: 5.0,
         volume: 2.0,
+        way: 0.03,
     };
 }
 
@@ -76,6 +81,25 @@ fn parts(steps: &[TracedStep]) -> Vec<f64> {
         (step.length / whole).min(1.0)
     };
     steps.iter().zip(&before).zip(&after).map(part).collect()
+}
+
+/// How far the curve goes along each step: by the variable that moves most, in parts of its extent, and in time, in parts of the period.
+fn ways(steps: &[TracedStep]) -> Vec<f64> {
+    let count = steps.first().map_or(0, |step| step.from.len());
+    let extent = |i: usize| {
+        let values = steps.iter().map(|step| step.from[i]);
+        let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
+            (a.min(x), b.max(x))
+        });
+        if most > least { most - least } else { 1.0 }
+    };
+    let extents = Vector::from_fn(count, |i, _| extent(i));
+    let period: f64 = steps.iter().map(|step| step.length).sum();
+    let next = steps.iter().cycle().skip(1);
+    let way = |(step, next): (&TracedStep, &TracedStep)| {
+        (&next.from - &step.from).component_div(&extents).amax() + step.length / period
+    };
+    steps.iter().zip(next).map(way).collect()
 }
 
 /// The largest loss on a refined arc, some four digits, and how often one is halved for it.
@@ -193,17 +217,24 @@ impl ShootingNodes {
         let (mut nodes, mut times) = (Vec::new(), Vec::new());
         let (each, mut last) = (all / count as f64, 0.0);
         let (mut before, mut next) = (0.0, 0.0);
-        for (step, measure) in steps.into_iter().zip(measures) {
+        let ways = ways(&steps);
+        let whole_way: f64 = ways.iter().sum();
+        let (mut gone, mut last_gone) = (0.0, 0.0);
+        for ((step, measure), way) in steps.into_iter().zip(measures).zip(ways) {
             // No arc is a short one, the last one neither.
-            let short = !times.is_empty() && f64::min(before - last, all - before) < 0.5 * each;
+            let short = f64::min(before - last, all - before) < 0.5 * each
+                || f64::min(gone - last_gone, whole_way - gone) < mesh.way;
+            let short = short && !times.is_empty();
             if before + 0.5 * measure >= next && !short {
                 nodes.push(step.from);
                 times.push(step.begin);
+                last_gone = gone;
                 // A step of much measure takes the place of several arcs: what follows it is not cut the finer for that.
                 next = f64::max(next + each, before + 0.5 * each);
                 last = before;
             }
             before += measure;
+            gone += way;
         }
         times.push(begin);
         let durations = times.windows(2).map(|t| t[1] - t[0]).collect();

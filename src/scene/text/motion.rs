@@ -3,11 +3,11 @@
 //! They are measured along a run, by how far each state moves and how fast, and are powers of two: numbers come back without rounding.
 
 use super::model::TextModel;
-use crate::error::Result;
-use crate::field::Vector;
+use crate::error::{Error, MessageUnits, Result};
+use crate::field::{Matrix, Vector};
 use crate::integrate::{AnyField, AnyIntegrator, AnyStep, Choice, Control, Tolerances};
 use crate::model::TextSystem;
-use crate::number::{Uncertain, eigenvalues};
+use crate::number::{Uncertain, eigenvalues, null_vector};
 use crate::orbit::{Crosscheck, Orbit, OrbitAccuracy};
 use std::borrow::Cow;
 
@@ -101,11 +101,17 @@ impl MotionUnits {
         if end.is_err() || seen.steps == 0 {
             return Ok(None);
         }
-        let end = self.outward(&Vector::from_column_slice(&seen.last));
-        let seen = seen.units();
+        let last = Vector::from_column_slice(&seen.last);
+        let end = self.outward(&last);
+        let seen = match seen.rests() {
+            true => seen.at_rest(&field.jacobian(&last)),
+            false => seen.units(),
+        };
+        // What dies out, or has not begun to move, keeps the unit that it has.
         let sizes = seen.sizes.iter().zip(&self.sizes);
+        let sizes = sizes.map(|(new, old)| if *new < STILL { *old } else { new * old });
         let measured = MotionUnits {
-            sizes: sizes.map(|(new, old)| new * old).collect(),
+            sizes: sizes.collect(),
             time: seen.time * self.time,
         };
         Ok(Some((end, measured)))
@@ -189,6 +195,16 @@ impl MotionUnits {
         inverse.outward_orbit(orbit.clone())
     }
 
+    /// An error of a search, with its times in the system's own unit.
+    pub fn outward_error(&self, error: Error) -> Error {
+        error.in_units(&MessageUnits {
+            time: (self.time, ""),
+            stress: (1.0, ""),
+            slip_rate: (1.0, ""),
+            stiffness: (1.0, ""),
+        })
+    }
+
     /// The same orbit by a second method.
     pub fn outward_crosscheck(&self, crosscheck: Crosscheck) -> Crosscheck {
         Crosscheck {
@@ -252,21 +268,55 @@ impl Seen {
         }
     }
 
+    /// A run that ends sooner has come to rest.
+    fn rests(&self) -> bool {
+        self.steps < STEPS
+    }
+
+    /// The value of a state, or, where it has died out, the largest that it had.
+    fn value(&self, i: usize) -> f64 {
+        let (value, largest) = (self.last[i].abs(), self.largest[i]);
+        if value > STILL * largest {
+            value
+        } else {
+            largest
+        }
+    }
+
+    /// At rest: in proportion to the slowest motion there, until the first state moves by its own value; what has no part in it has its value.
+    fn at_rest(&self, jacobian: &Matrix) -> MotionUnits {
+        let values = Vector::from_fn(self.last.len(), |i, _| self.value(i));
+        let motion = slowest_motion(jacobian).unwrap_or_else(|| values.clone());
+        let reach = motion.iter().zip(&values).zip(&self.last);
+        let reach = reach
+            .filter(|((_, value), last)| last.abs() > STILL * **value)
+            .map(|((moved, value), _)| value / moved);
+        let reach = reach
+            .filter(|x| x.is_finite())
+            .fold(f64::INFINITY, f64::min);
+        let size = |(moved, value): (&f64, &f64)| {
+            let own = moved * reach;
+            let size = round(if own.is_finite() && own > STILL * value {
+                own
+            } else {
+                *value
+            });
+            if size.is_normal() { size } else { 1.0 }
+        };
+        MotionUnits {
+            sizes: motion.iter().zip(&values).map(size).collect(),
+            time: 1.0,
+        }
+    }
+
     /// States that move have their range, others their value; the time is that in which the liveliest one goes through its range.
     fn units(&self) -> MotionUnits {
-        // A run that ends sooner has come to rest.
-        let rests = self.steps < STEPS;
         let mut time = f64::INFINITY;
         let mut sizes = Vec::with_capacity(self.last.len());
         for (i, (least, most)) in self.ranges.iter().enumerate() {
-            let (range, value) = (most - least, self.last[i].abs());
-            let moves = !rests && range > STILL * most.abs().max(least.abs());
-            let size = match moves {
-                true => range,
-                false if value > STILL * self.largest[i] => value,
-                false => self.largest[i],
-            };
-            let size = round(size);
+            let range = most - least;
+            let moves = range > STILL * most.abs().max(least.abs());
+            let size = round(if moves { range } else { self.value(i) });
             sizes.push(if size.is_normal() { size } else { 1.0 });
             if moves {
                 time = time.min((self.end - self.begin) * range / self.ways[i]);
@@ -276,4 +326,19 @@ impl Seen {
         let time = if time.is_normal() { time } else { 1.0 };
         MotionUnits { sizes, time }
     }
+}
+
+/// How far each variable moves in the motion of the linearised system that decays last.
+fn slowest_motion(jacobian: &Matrix) -> Option<Vector> {
+    let all = eigenvalues(jacobian)?;
+    let slowest = all.into_iter().max_by(|a, b| a.re.total_cmp(&b.re))?;
+    let count = jacobian.nrows();
+    let shifted = jacobian - Matrix::identity(count, count) * slowest.re;
+    if slowest.im == 0.0 {
+        return Some(null_vector(shifted)?.abs());
+    }
+    let turned = Matrix::identity(count, count) * slowest.im.powi(2);
+    let along = null_vector(&shifted * &shifted + turned)?;
+    let across = shifted * &along / slowest.im;
+    Some(along.zip_map(&across, f64::hypot))
 }

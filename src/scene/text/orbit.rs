@@ -115,7 +115,8 @@ impl TextOrbitPlan {
             &units.inward(&self.start),
             self.period.map(|period| period / units.time),
             &units.inward_accuracy(self.accuracy, self.atol_is_given),
-        )?;
+        )
+        .map_err(|error| units.outward_error(error))?;
         let others = found.others.into_iter();
         let mut found = FoundOrbit {
             orbit: units.outward_orbit(found.orbit),
@@ -211,7 +212,8 @@ impl TextOrbitPlan {
         };
         let units = &self.units;
         let inward = units.inward_accuracy(second, self.atol_is_given);
-        let again = crosscheck_of(&self.field()?, &units.inward_orbit(orbit), &inward)?;
+        let again = crosscheck_of(&self.field()?, &units.inward_orbit(orbit), &inward)
+            .map_err(|error| units.outward_error(error))?;
         let mut again = units.outward_crosscheck(again);
         self.complete(&mut again.orbit, &second)?;
         Ok(Some(again))

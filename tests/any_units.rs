@@ -1,0 +1,206 @@
+//! Systems from files in any units: the same points, periods and verdicts, and branches as long.
+
+use crate::command::{self, folder, number};
+use serde_json::Value;
+use std::fs;
+
+fn made(arguments: &str) -> Value {
+    let ended = command::twinslip(&format!("{arguments} --format json -q"));
+    // Where one state is 10^12 times another |q| is known to few digits, and to which side a bifurcation goes is undecided.
+    assert!([0, 3].contains(&ended.code), "{arguments}: {}", ended.err);
+    serde_json::from_str(&ended.out).expect("JSON")
+}
+
+/// Labels of special points, with the parameter and the period, and the number of rows.
+fn branch(arguments: &str, parameter: &str) -> (Vec<(String, f64, f64)>, usize) {
+    let made = made(&format!("branch orbits {arguments}"));
+    let points = made["result"]["special"].as_array().expect("a list");
+    let points = points.iter().map(|one| {
+        let label = one["label"].as_str().expect("a label").to_owned();
+        let value = number(one, &format!("/{parameter}/value"));
+        (label, value, number(one, "/period/value"))
+    });
+    let rows = made["result"]["rows"].as_array().expect("rows").len();
+    (points.collect(), rows)
+}
+
+/// Points that AUTO-07p finds (NTST 100 to 300, NCOL 4, EPS 1e-8), with the parameter and, where it tells it, the period.
+#[test]
+fn branches_of_oscillators_in_their_own_units_are_whole() {
+    let all: [(&str, &str, &[(&str, f64, Option<f64>)]); 3] = [
+        (
+            "morris-lecar-cycle.toml --along I --from 80 --to 230",
+            "I",
+            &[
+                ("HB", 93.8576184, None),
+                ("SN", 88.2932505, Some(135.386)),
+                ("SN", 216.8998014, Some(77.929)),
+                ("HB", 212.0188161, None),
+            ],
+        ),
+        (
+            "jansen-rit-cycle.toml --along p --from 50 --to 350",
+            "p",
+            &[("HB", 89.8291, None), ("HB", 315.6964, None)],
+        ),
+        (
+            "goldbeter-cycle.toml --along vi --from 0.005 --to 0.02",
+            "vi",
+            &[
+                ("HB", 0.0119169, None),
+                ("SN", 0.0108244, Some(21.2184)),
+                ("EP", 0.02, None),
+            ],
+        ),
+    ];
+    for (arguments, parameter, known) in all {
+        let (points, rows) = branch(&format!("--system tests/data/cases/{arguments}"), parameter);
+        assert_eq!(points.len(), known.len(), "{points:?}");
+        assert!(rows < 150, "{arguments}: {rows} rows");
+        for ((label, value, period), (wanted, at, known)) in points.iter().zip(known) {
+            // To the digits that are told.
+            let digits = |x: f64| {
+                0.5 * 10.0_f64.powi(-(x.to_string().split('.').nth(1).map_or(0, str::len) as i32))
+            };
+            assert_eq!(label, wanted, "{points:?}");
+            assert!(
+                (value - at).abs() <= 1.001 * digits(*at),
+                "{label} {value} {at}"
+            );
+            if let Some(known) = known {
+                assert!(
+                    (period - known).abs() <= 2.0 * digits(*known),
+                    "{label} {period} {known}"
+                );
+            }
+        }
+    }
+}
+
+/// Roessler's system with x = sx X, y = sy Y, z = sz Z and time in units of st.
+fn roessler(test: &str, [sx, sy, sz]: [f64; 3], st: f64) -> String {
+    let text = format!(
+        "name = \"roessler-scaled\"\nstates = [\"x\", \"y\", \"z\"]\n[parameters]\na = 0.2\nb = 0.2\nc = 2.0\n[rates]\n\
+         x = \"{st:e}*(-{sy:e}*y - {sz:e}*z)/{sx:e}\"\n\
+         y = \"{st:e}*({sx:e}*x + a*{sy:e}*y)/{sy:e}\"\n\
+         z = \"{st:e}*(b + {sz:e}*z*({sx:e}*x - c))/{sz:e}\"\n\
+         [start]\nx = {:e}\ny = 0.0\nz = 0.0\n",
+        1.0 / sx
+    );
+    let name = format!("any_units_{test}_{sx:e}_{sy:e}_{sz:e}_{st:e}");
+    let file = folder(&name).join("system.toml");
+    fs::write(&file, text).expect("a file");
+    file.display().to_string()
+}
+
+const UNITS: [([f64; 3], f64); 5] = [
+    ([1.0; 3], 1.0),
+    ([1e3; 3], 1.0),
+    ([1e-3; 3], 1e4),
+    ([1e6, 1e-6, 3e2], 1e-5),
+    ([7e-5, 2e4, 1e-6], 4e3),
+];
+
+#[test]
+fn a_branch_of_orbits_is_the_same_in_any_units() {
+    let known = branch(
+        &format!(
+            "--system {} --along c --from 0.5 --to 6",
+            roessler("branch", [1.0; 3], 1.0)
+        ),
+        "c",
+    );
+    let doubling = known
+        .0
+        .iter()
+        .find(|(label, ..)| label == "PD")
+        .expect("a period doubling");
+    assert!(
+        (doubling.1 - 2.832_445_027_862_540).abs() < 1e-11,
+        "{doubling:?}"
+    );
+    for (sizes, time) in UNITS {
+        let (points, rows) = branch(
+            &format!(
+                "--system {} --along c --from 0.5 --to 6",
+                roessler("branch", sizes, time)
+            ),
+            "c",
+        );
+        assert_eq!(points.len(), known.0.len(), "{points:?}");
+        for (point, wanted) in points.iter().zip(&known.0) {
+            assert_eq!(point.0, wanted.0, "{points:?}");
+            assert!(
+                (point.1 / wanted.1 - 1.0).abs() < 1e-11,
+                "{point:?} {wanted:?}"
+            );
+            assert!(
+                (point.2 * time / wanted.2 - 1.0).abs() < 1e-11,
+                "{point:?} {wanted:?}"
+            );
+        }
+        let more = rows as f64 / known.1 as f64;
+        assert!(
+            (0.7..1.4).contains(&more),
+            "{rows} rows, {} in its own units",
+            known.1
+        );
+    }
+}
+
+#[test]
+fn an_orbit_is_the_same_in_any_units() {
+    let orbit = |sizes, time| {
+        made(&format!(
+            "orbit --system {} --set c=2.5",
+            roessler("orbit", sizes, time)
+        ))
+    };
+    let known = orbit([1.0; 3], 1.0);
+    let near = |made: &Value, pointer: &str, unit: f64| {
+        let of = |object: &Value, part: &str| number(object, &format!("{pointer}/{part}"));
+        let off = (of(made, "value") * unit - of(&known, "value")).abs();
+        let told = of(made, "uncertainty") * unit + of(&known, "uncertainty");
+        assert!(off <= told, "{pointer}: {off} > {told}");
+        // No wider than it is in other units, by much.
+        assert!(
+            told < 100.0 * of(&known, "uncertainty"),
+            "{pointer}: {told}"
+        );
+    };
+    for (sizes, time) in UNITS {
+        let made = orbit(sizes, time);
+        near(&made, "/result/orbit/period", time);
+        near(&made, "/result/orbit/log_multipliers/0/ln_abs", 1.0);
+        assert_eq!(
+            made["result"]["orbit"]["verdict"],
+            known["result"]["orbit"]["verdict"]
+        );
+        let differs = number(&made, "/result/orbit/crosscheck/period_difference");
+        assert!(differs.abs() < 1e-10 * number(&known, "/result/orbit/period/value") / time);
+    }
+}
+
+/// The first Lyapunov coefficient is that of the file's own units, |q| = 1 in these.
+#[test]
+fn coefficients_are_those_of_the_units_of_the_file() {
+    let coefficient = |sizes: [f64; 3]| {
+        let file = roessler("coefficient", sizes, 1.0);
+        let made = made(&format!(
+            "branch equilibria --system {file} --along a --from -0.5 --to 0.5 --set c=2.5"
+        ));
+        let points = made["result"]["special"]
+            .as_array()
+            .expect("a list")
+            .clone();
+        let hopf = points
+            .iter()
+            .find(|one| one["label"] == "HB")
+            .expect("a Hopf point")
+            .clone();
+        number(&hopf, "/coefficient")
+    };
+    // In units that are k times larger q is k times longer in the old ones: |q|^2 and with it the coefficient grows by k^2.
+    let (own, larger) = (coefficient([1.0; 3]), coefficient([100.0; 3]));
+    assert!((larger / own / 1e4 - 1.0).abs() < 1e-9, "{own} {larger}");
+}
