@@ -185,7 +185,7 @@ pub fn change(command: &str, kind: Kind, option: &str) -> Option<Change> {
         "seed" => To("2"),
         "skip" => To("1"),
         "start" if command == "branch orbits" && system => With("--from 2.1 --to 2.2", "1.9,1.5"),
-        "start" if system && follows || command == "equilibria" && system => To("5,5,20"),
+        "start" if system && (follows || command == "equilibria") => To("5,5,20"),
         "start" if system => To("1.2,2.5"),
         "start" if kind == Many => To("near-symmetric:0.5"),
         // From so far away no equilibrium is found.
