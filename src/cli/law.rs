@@ -195,7 +195,18 @@ pub fn write<R>(
 ) -> Result<Ending> {
     let units = system.units();
     let landmarks = Landmarks::of(curves, units);
-    let at_driving = together.map(|all| at_driving(curves, all, columns, units));
+    let at_driving = together
+        .filter(|all| all.slip_rate.is_some())
+        .map(|all| at_driving(curves, all, columns, units));
+    // N K against the largest critical stiffness: above it steady sliding together is stable at every rate.
+    let over_maximum = together.and_then(|all| all.stiffness).map(|stiffness| {
+        let maxima = curves.iter();
+        let maxima = maxima.filter_map(|curve| curve.landmarks.critical_stiffness_maximum);
+        let largest = maxima
+            .map(|maximum| maximum.stiffness.value)
+            .fold(0.0, f64::max);
+        (largest > 0.0).then(|| stiffness / largest)
+    });
     let points = || curves.iter().flat_map(|curve| &curve.points);
     if report.format == Format::Json {
         report.hand_on(units, columns, points());
@@ -206,6 +217,9 @@ pub fn write<R>(
         if let Some(at_driving) = at_driving {
             result["at_driving"] = json!(at_driving);
         }
+        if let Some(ratio) = over_maximum {
+            result["stiffness_over_critical_maximum"] = json!(ratio);
+        }
         let bytes = report.envelope(system, json!({}), result, work, failure);
         return report.write(&bytes);
     }
@@ -214,6 +228,9 @@ pub fn write<R>(
     remarks.extend(found.iter().cloned());
     if let Some(at_driving) = at_driving {
         remarks.push(format!("at_driving: {}", json!(at_driving)));
+    }
+    if let Some(ratio) = over_maximum {
+        remarks.push(format!("stiffness_over_critical_maximum: {}", json!(ratio)));
     }
     let ending = report.write_all(units, remarks, columns, points())?;
     found.iter().for_each(|line| report.say(line));

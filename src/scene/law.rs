@@ -22,15 +22,15 @@ pub struct LawPlan {
     pub system: System,
     /// Where it is evaluated, ascending, in V*.
     pub slip_rates: Vec<f64>,
-    /// What interfaces do that slide together at V_H, where it is given.
+    /// What slides together, where V_H or K is given.
     pub together: Option<Together>,
 }
 
 /// Interfaces that slide steadily together.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Together {
-    /// The slip rate of each, V_H/N, in V*.
-    pub slip_rate: f64,
+    /// The slip rate of each, V_H/N, in V*, where V_H is given.
+    pub slip_rate: Option<f64>,
     /// The stiffness that each slides on, N K, where K is given.
     pub stiffness: Option<f64>,
 }
@@ -39,7 +39,7 @@ impl Together {
     /// What the options say of N, V_H and K.
     ///
     /// # Errors
-    /// [`Error::Input`] for K alone, and for clusters; [`Error::Parameter`] for values that are not positive.
+    /// [`Error::Input`] for clusters; [`Error::Parameter`] for values that are not positive.
     pub(super) fn of(model: &ModelOptions, units: &Units) -> Result<Option<Self>> {
         if model.slab.clusters.is_some() {
             return Err(Error::Input(
@@ -47,21 +47,18 @@ impl Together {
             ));
         }
         let [driving, stiffness] = model.loading()?;
-        let Some(driving) = driving else {
-            return match stiffness {
-                None => Ok(None),
-                Some(_) => Err(Error::Input(
-                    "`stiffness` is compared with the critical one at V_H/N; give `driving` too"
-                        .into(),
-                )),
-            };
-        };
+        if driving.is_none() && stiffness.is_none() {
+            return Ok(None);
+        }
         let count = f64::from(model.slab.count());
         let spring = |k: f64| -> Result<f64> {
             Ok(count * units.inward(Quantity::Stiffness, positive("stiffness", k)?))
         };
+        let share = |v: f64| -> Result<f64> {
+            Ok(units.inward(Quantity::SlipRate, positive("driving", v)?) / count)
+        };
         Ok(Some(Together {
-            slip_rate: units.inward(Quantity::SlipRate, positive("driving", driving)?) / count,
+            slip_rate: driving.map(share).transpose()?,
             stiffness: stiffness.map(spring).transpose()?,
         }))
     }
@@ -161,7 +158,9 @@ impl LawPlan {
         Ok(LawCurve {
             interface,
             points: self.slip_rates.iter().map(point).collect(),
-            together: self.together.map(|all| point(&all.slip_rate)),
+            together: self
+                .together
+                .and_then(|all| all.slip_rate.as_ref().map(&point)),
             landmarks: LawLandmarks {
                 extrema: Extremum::all(law),
                 critical_stiffness_maximum: law.critical_stiffness_maximum()?,

@@ -77,7 +77,8 @@ impl TextLawPlan {
             let (points, failure) = self.points(&friction, i + 1);
             let together = self
                 .together
-                .map(|all| point(&friction, i + 1, all.slip_rate));
+                .and_then(|all| all.slip_rate)
+                .map(|rate| point(&friction, i + 1, rate));
             curves.push(LawCurve {
                 interface: i + 1,
                 together: together.transpose()?,
