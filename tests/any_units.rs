@@ -207,3 +207,12 @@ fn coefficients_are_those_of_the_units_of_the_file() {
     let (own, larger) = (coefficient([1.0; 3]), coefficient([100.0; 3]));
     assert!((larger / own / 1e4 - 1.0).abs() < 1e-9, "{own} {larger}");
 }
+
+/// A branch begins so near its Hopf point that a value close by is landed on: on the unstable orbits between that and the fold, and on the others.
+#[test]
+fn values_beside_a_hopf_point_are_landed_on() {
+    let arguments = "--system fitzhugh-nagumo --along I --from 0 --to 0.6 --at 0.33";
+    let (points, _) = branch(arguments, "I");
+    let landed = points.iter().filter(|(label, ..)| label == "UZ").count();
+    assert_eq!(landed, 2, "{points:?}");
+}

@@ -22,7 +22,7 @@ pub(super) struct GeneralHopf {
 
 /// Nodes of a small orbit, and its size where the branch begins; a part of that where the orbits are not yet ellipses, down to the least.
 const NODES: usize = 12;
-const FIRST: f64 = 0.05;
+const FIRST: f64 = 0.02;
 const SMALLER: f64 = 0.5;
 const LEAST: f64 = 1e-6;
 
