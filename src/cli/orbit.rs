@@ -29,6 +29,10 @@ pub trait OrbitSearch {
     fn system(&self) -> &dyn Described;
     /// By which method an orbit was computed, and by which second one.
     fn accuracy(&self, orbit: &Orbit) -> (OrbitAccuracy, Option<OrbitAccuracy>);
+    /// What a state may err by in a step beside its relative error: one number, or one for each state.
+    fn absolute_tolerance(&self, accuracy: &OrbitAccuracy) -> Value {
+        json!(accuracy.tolerances.atol)
+    }
     /// Whether there are to be rows.
     fn has_rows(&self) -> bool;
     fn find(&self) -> Result<FoundOrbit>;
@@ -215,7 +219,7 @@ fn numerics(plan: &impl OrbitSearch, orbit: &Orbit) -> Value {
     json!({
         "method": orbit.method,
         "rtol": accuracy.tolerances.rtol,
-        "atol": accuracy.tolerances.atol,
+        "atol": plan.absolute_tolerance(&accuracy),
         "max_step": plan.system().units().max_step(accuracy.tolerances),
         "max_steps": accuracy.max_steps,
         "crosscheck": second.map(|second| second.method.name()),

@@ -12,8 +12,7 @@ use nalgebra::{DMatrix, DVector};
 const LEAST_STEP: f64 = 1e-10;
 /// A damping that holds back what the residuals do not determine at all.
 const LEAST_DAMPING: f64 = 1e-12;
-/// What such a step may still promise, in parts of the sum of squares, where no step leads down: what the residuals are off by themselves; and how
-/// long it may be.
+/// What such a step may still promise, in parts of the sum of squares, where no step leads down: what the residuals are off by themselves.
 const NOTHING: f64 = 1e-6;
 /// The damping at first, relative to the curvature.
 const FIRST_DAMPING: f64 = 1e-3;
@@ -95,7 +94,7 @@ pub fn minimise(
             break;
         }
         if taken.amax() <= LEAST_STEP || damping > MOST_DAMPING {
-            converged = promised <= NOTHING * here.cost() || full.amax() <= NOTHING;
+            converged = promised <= NOTHING * here.cost();
             break;
         }
         evaluations += 1;

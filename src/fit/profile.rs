@@ -156,14 +156,20 @@ impl<const N: usize> Side<'_, N> {
             start[at] = variable;
             (self.problem.cost(&start), start)
         };
-        let from = [others.as_slice(), &self.minimum.variables];
-        let starts = from.map(|from| [0.0, 1.0].map(|part| moved_from(from, part)));
+        let mut from = vec![others.as_slice()];
+        if *others != self.minimum.variables {
+            from.push(&self.minimum.variables);
+        }
+        let starts = from
+            .iter()
+            .map(|from| [0.0, 1.0].map(|part| moved_from(from, part)));
+        let starts: Vec<_> = starts.collect();
+        profile.evaluations += 2 * starts.len();
         let lowest = starts
             .into_iter()
             .flatten()
             .min_by(|a, b| a.0.total_cmp(&b.0));
         let (_, start) = lowest?;
-        profile.evaluations += 4;
         bounds[at] = (variable, variable);
         let searched = self
             .problem

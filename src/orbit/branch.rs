@@ -1,7 +1,7 @@
 //! Branches of periodic orbits from Hopf points, and the orbits on them at a wanted V_H.
 
 use super::arc::Tracer;
-use super::continuation_point::{ContinuationPoint, TangentVector};
+use super::continuation_point::ContinuationPoint;
 use super::correct::Corrector;
 use super::family::OverLoadings;
 use super::find::SEARCH;
@@ -12,13 +12,10 @@ use super::shooting::close;
 use super::shooting_nodes::ShootingNodes;
 use super::space::{Space, space_of};
 use crate::equilibrium::Symmetry;
-use crate::error::{Error, Result};
-use crate::field::Vector;
+use crate::error::Result;
 use crate::model::{DRIVING, Parameter};
 use std::ops::ControlFlow::{Break, Continue};
 
-/// Size of the first orbit.
-const FIRST: f64 = 0.02;
 /// Below this extent the square of the amplitude is taken to change in proportion with the parameter, and no smaller orbits
 /// are asked for: their nodes' planes would miss them.
 const SMALL: f64 = 0.2;
@@ -29,32 +26,6 @@ const STEPS: usize = 400;
 const BEYOND: f64 = 2.0;
 
 impl<'c, 'f> Palc<'c, 'f> {
-    /// Along the branch of a Hopf point, from a small orbit outwards.
-    ///
-    /// # Errors
-    /// [`Error::Dimension`] where the family is not of a slab's variables; as of [`Palc::from`].
-    pub fn from_hopf(
-        corrector: &'c mut Corrector<'f>,
-        settings: PalcSettings,
-        hopf: &HopfPoint,
-    ) -> Result<Self> {
-        let dimension = corrector.family.dimension();
-        let known = matches!(dimension, 2 | 3);
-        let what = "the branch of orbits of a Hopf point of a slab";
-        Error::dimension_unless(known, what, "2 or 3", dimension)?;
-        let at = hopf.at();
-        let shooting = hopf.ellipse(&corrector.family.field(at), FIRST);
-        let centre = shooting.nodes.iter().sum::<Vector>() / shooting.nodes.len() as f64;
-        let outwards = TangentVector {
-            nodes: shooting.nodes.iter().map(|x| x - &centre).collect(),
-            durations: vec![0.0; shooting.nodes.len()],
-            parameters: [0.0; 2],
-        };
-        // The ellipse itself is the first prediction.
-        let site = ContinuationPoint { shooting, at };
-        Palc::from(corrector, settings, site, outwards)
-    }
-
     /// Where the amplitude becomes zero by its last two values, in the coordinate of the free parameter, if the orbits shrink
     /// to an equilibrium.
     fn vanishes(&self, before: &ContinuationPoint) -> Option<f64> {
@@ -120,9 +91,11 @@ fn follow(
     let begin = hopf.at()[0];
     let reach = BEYOND + 2.0 * (wanted - begin).abs();
     let mut corrector = Corrector::by(family, Tracer::limited(ROUGH, SEARCH, SEARCH)?);
-    let Ok(mut palc) =
-        Palc::from_hopf(&mut corrector, PalcSettings::branch(DRIVING, LONGEST), hopf)
-    else {
+    let Ok(mut palc) = Palc::from_hopf(
+        &mut corrector,
+        PalcSettings::branch(DRIVING, LONGEST),
+        &hopf.small_orbits(family),
+    ) else {
         return Ok(());
     };
     palc.follow(&[], STEPS, &mut |palc, before, _| {

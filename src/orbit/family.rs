@@ -39,10 +39,21 @@ pub trait ParametrisedField: Sync {
     fn across(&self, _x: &Vector, flow: &Vector) -> Matrix {
         projection(flow)
     }
+
+    /// The units of the variables, where lengths are told in others.
+    fn units(&self) -> Option<&[f64]> {
+        None
+    }
+}
+
+/// As [`ParametrisedField::across`], with the displacement measured in other units than the variables, of which these are the sizes.
+pub fn across_in_units(units: &[f64], flow: &Vector) -> Matrix {
+    let outward = Matrix::from_diagonal(&Vector::from_column_slice(units));
+    projection(&(&outward * flow)) * outward
 }
 
 /// The projection across a direction.
-pub(super) fn projection(along: &Vector) -> Matrix {
+fn projection(along: &Vector) -> Matrix {
     let count = along.len();
     Matrix::identity(count, count) - along * along.transpose() / along.norm_squared()
 }

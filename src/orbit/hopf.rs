@@ -1,12 +1,12 @@
 //! Hopf points of a slab along V_H, and the small orbits beside them.
 
+use super::family::ParametrisedField;
 use super::interface_system::InterfaceSystem;
 use super::settle::axis;
-use super::shooting_nodes::ShootingNodes;
+use super::small_orbits::SmallOrbits;
 use crate::equilibrium::{Equilibrium, Solver, Symmetry, eigenvalues, steady_states};
 use crate::error::Result;
 use crate::field::Vector;
-use crate::integrate::AnyField;
 use crate::model::{Loading, Parameter};
 use nalgebra::Complex;
 
@@ -233,33 +233,24 @@ impl HopfPoint {
         [self.driving.ln(), self.stiffness.ln()]
     }
 
-    /// The ellipse of this size around the equilibrium on which the linearised system turns.
-    ///
-    /// With the third eigenvalue l the vectors (J - l) v are of the pair's plane, and there J^2 = -omega^2.
-    pub(crate) fn ellipse(&self, field: &AnyField<'_>, size: f64) -> ShootingNodes {
-        /// Nodes.
-        const NODES: usize = 12;
-        let dimension = field.dimension();
-        let y = Vector::from_fn(dimension, |i, _| match i {
+    /// The small orbits beside it, of a system in (tau, ln psi) or (tau, ln psi_1, ln psi_2).
+    pub fn small_orbits(&self, family: &dyn ParametrisedField) -> SmallOrbits {
+        let dimension = family.dimension();
+        let state = Vector::from_fn(dimension, |i, _| match i {
             0 => self.equilibrium.stress.value,
             i => self.equilibrium.log_state[i - 1],
         });
-        let jacobian = field.jacobian(&y);
         let mut along = axis(dimension, 0);
         if dimension == 3 {
-            // The pair's own trace is zero.
+            // With the third eigenvalue l the vectors (J - l) v are of the pair's plane, and its own trace is zero.
+            let jacobian = family.field(self.at()).jacobian(&state);
             along = &jacobian * &along - &along * jacobian.trace();
         }
-        let across = jacobian * &along / self.frequency;
-        let scale = size / along.amax().max(across.amax());
-        let turn = std::f64::consts::TAU / NODES as f64;
-        let nodes = (0..NODES).map(|k| {
-            let (sin, cos) = (turn * k as f64).sin_cos();
-            &y + (&along * cos + &across * sin) * scale
-        });
-        ShootingNodes {
-            nodes: nodes.collect(),
-            durations: vec![turn / self.frequency; NODES],
+        SmallOrbits {
+            state,
+            at: self.at(),
+            frequency: self.frequency,
+            along,
         }
     }
 }

@@ -181,11 +181,13 @@ fn parts(u: &CVector) -> [(Vector, f64); 2] {
 }
 
 /// Of the arcs from node to node, what the displacements in the planes become along them: the integral over the arc of the square
-/// of a displacement's part across the flow, as a quadratic form of what it is in the first node's plane.
+/// of a displacement's part across the flow, which `across` gives of a point and the flow there, as a quadratic form of what it is in the first
+/// node's plane.
 pub fn squares(
     family: &dyn ParametrisedField,
     site: &ContinuationPoint,
     axes: Axes,
+    across: &dyn Fn(&Vector, &Vector) -> Matrix,
 ) -> Option<Vec<Matrix>> {
     /// Points and weights of Gauss on (0, 1).
     const POINTS: [(f64, f64); 6] = [
@@ -213,7 +215,7 @@ pub fn squares(
             let part = arcs.arc(&x, (point - at) * duration).ok()?;
             (x, at) = (part.end, point);
             moved = part.tangent * moved;
-            let across = family.across(&x, &field.f(&x)) * &moved;
+            let across = across(&x, &field.f(&x)) * &moved;
             sum += across.tr_mul(&across) * (weight * duration);
         }
         Some(sum)

@@ -27,6 +27,7 @@ mod profile;
 mod settle;
 pub(crate) mod shooting;
 mod shooting_nodes;
+mod small_orbits;
 mod solve;
 mod space;
 mod switch;
@@ -38,6 +39,7 @@ pub use continuation_point::{ContinuationPoint, TangentVector};
 pub use correct::{Condition, Corrector, Goal, Regular};
 pub use crosscheck::{Crosscheck, crosscheck, crosscheck_of};
 pub use extremes::ranges;
+pub(crate) use family::across_in_units;
 pub use family::{
     OverDifferenceChart, OverLoadings, OverLogarithms, OverParameters, ParametrisedField,
 };
@@ -59,6 +61,7 @@ pub use profile::{Profile, profile, profile_of};
 pub use shooting::{Closed, close};
 pub use shooting_nodes::ShootingNodes;
 pub(crate) use shooting_nodes::of_digits;
+pub use small_orbits::SmallOrbits;
 pub use solve::{Orbit, OrbitAccuracy};
 pub use switch::Switch;
 pub use test_function::{Spectrum, TestFunction};

@@ -1,8 +1,8 @@
 //! A system whose equations were read, over one or two of its parameters.
 
-use super::family::{ParametrisedField, projection};
+use super::family::ParametrisedField;
 use crate::error::{Error, Result};
-use crate::field::{Matrix, Vector, place};
+use crate::field::place;
 use crate::integrate::AnyField;
 use crate::model::TextSystem;
 use std::borrow::Cow;
@@ -131,10 +131,8 @@ impl ParametrisedField for OverText<'_> {
         [first, if same { 0.0 } else { second }]
     }
 
-    /// In the units of the formulas as they were read.
-    fn across(&self, _: &Vector, flow: &Vector) -> Matrix {
-        let sizes = Vector::from_column_slice(self.system.sizes());
-        let outward = Matrix::from_diagonal(&sizes);
-        projection(&(&outward * flow)) * outward
+    fn units(&self) -> Option<&[f64]> {
+        let sizes = self.system.sizes();
+        sizes.iter().any(|size| *size != 1.0).then_some(sizes)
     }
 }

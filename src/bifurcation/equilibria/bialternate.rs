@@ -3,7 +3,7 @@
 
 use crate::field::{Matrix, Vector};
 use crate::integrate::AnyField;
-use crate::number::null_vector;
+use crate::number::{eigenvector, null_vector};
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// The bialternate product 2 A (.) 1, of size N (N - 1) / 2: its eigenvalues are the sums of two of A's.
@@ -87,7 +87,7 @@ pub(super) fn lyapunov_by(
     let a = field.jacobian(at).map(Complex::from);
     let i_omega = Complex::new(0.0, omega);
     let one = DMatrix::<Complex<f64>>::identity(n, n);
-    let q = null_vector(&a - &one * i_omega)?;
+    let q = eigenvector(&field.jacobian(at), i_omega)?;
     let p = null_vector(a.adjoint() + &one * i_omega)?;
     // <p, q> = 1, conjugate-linear in p
     let p = &p / p.dotc(&q).conj();

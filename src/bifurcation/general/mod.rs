@@ -7,7 +7,6 @@ mod curves;
 mod ends;
 mod equilibria;
 mod growing_period;
-mod hopf;
 mod multipliers_together;
 mod orbit_branch;
 mod orbit_curves;

@@ -2,7 +2,6 @@
 
 use super::ends::{End, backwards};
 use super::equilibria::EquilibriumBranches;
-use super::hopf::GeneralHopf;
 use super::orbit_branch::OrbitBranch;
 use super::orbit_point::orbit_point;
 use super::splits::with_splits;
@@ -15,7 +14,7 @@ use crate::bifurcation::orbits::{ARC, LONGEST, ROUGH, WORK};
 use crate::error::Result;
 use crate::orbit::{
     Condition, ContinuationPoint, Corrector, Goal, Palc, PalcSettings, ParametrisedField, Regular,
-    Switch, Tracer,
+    SmallOrbits, Switch, Tracer,
 };
 use std::ops::ControlFlow::Continue;
 
@@ -43,20 +42,18 @@ pub(super) fn new_corrector(family: &dyn ParametrisedField) -> Result<Corrector<
 }
 
 /// The Hopf points on all equilibria, by their coordinate, each once; as they are told of.
-pub(super) fn hopf_points(branch: &GeneralBranch<'_>) -> Result<Vec<(GeneralHopf, GeneralPoint)>> {
-    let mut found: Vec<(GeneralHopf, GeneralPoint)> = Vec::new();
+pub(super) fn hopf_points(branch: &GeneralBranch<'_>) -> Result<Vec<(SmallOrbits, GeneralPoint)>> {
+    let mut found: Vec<(SmallOrbits, GeneralPoint)> = Vec::new();
     EquilibriumBranches::new(branch).all(&mut |point, _| {
         if let (Some(Label::Hb), Some(period)) = (point.label, point.period)
             && let GeneralSolution::Equilibrium { state, .. } = &point.solution
         {
-            let hopf = GeneralHopf {
-                state: state.clone(),
-                at: point.at,
-                frequency: std::f64::consts::TAU / period.value,
-            };
-            let place = |hopf: &GeneralHopf| branch.system.representative(&hopf.state);
+            let frequency = std::f64::consts::TAU / period.value;
+            let field = branch.system.family.field(point.at);
+            let hopf = SmallOrbits::of(&field, state.clone(), point.at, frequency);
+            let place = |hopf: &SmallOrbits| branch.system.representative(&hopf.state);
             let here = place(&hopf);
-            let same = |other: &GeneralHopf| {
+            let same = |other: &SmallOrbits| {
                 (other.frequency / hopf.frequency - 1.0).abs() < SAME
                     && (other.at[FREE] - hopf.at[FREE]).abs() < SAME
                     && (place(other) - &here).amax() < SAME * (1.0 + here.amax())
@@ -75,7 +72,7 @@ pub(super) fn hopf_points(branch: &GeneralBranch<'_>) -> Result<Vec<(GeneralHopf
 pub(super) struct OrbitBranches<'b, 'a> {
     pub branch: &'b GeneralBranch<'a>,
     pub count: usize,
-    pub hopfs: Vec<(GeneralHopf, GeneralPoint)>,
+    pub hopfs: Vec<(SmallOrbits, GeneralPoint)>,
     /// The coordinates of the Hopf points, and whether a branch has come there.
     pub coordinates: Vec<f64>,
     pub reached: Vec<bool>,
@@ -263,7 +260,7 @@ impl<'b, 'a> OrbitBranches<'b, 'a> {
             return Ok(());
         }
         let mut corrector = new_corrector(self.branch.system.family)?;
-        match hopf.palc(&mut corrector, self.settings()) {
+        match Palc::from_hopf(&mut corrector, self.settings(), &hopf) {
             Ok(mut palc) => OrbitBranch::new(self, number, 0, inside).go(&mut palc, teller),
             Err(_) if !inside => Ok(()),
             Err(error) => {

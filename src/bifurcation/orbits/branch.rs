@@ -224,7 +224,8 @@ impl<'r> BranchSet<'r> {
         if inside && self.tells(number) && seen(special).is_break() {
             return Ok(Break(()));
         }
-        match Palc::from_hopf(&mut corrector, self.settings(), &hopf) {
+        let beside = hopf.small_orbits(chart.family());
+        match Palc::from_hopf(&mut corrector, self.settings(), &beside) {
             Ok(mut palc) => OrbitBranch::new(self, number, chart, begin, seen).go(&mut palc),
             Err(error) if inside && self.tells(number) => {
                 let special = Special {

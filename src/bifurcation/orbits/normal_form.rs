@@ -24,8 +24,8 @@ use crate::error::{Error, Result};
 use crate::field::{Matrix, Vector};
 use crate::number::Uncertain;
 use crate::orbit::{
-    Axes, CVector, ContinuationPoint, LogEigenvalue, ParametrisedField, PoincareMaps, cut_into,
-    cyclic, eigenvalues_of, finely_cut, squares, unit_pair,
+    Axes, CVector, ContinuationPoint, LogEigenvalue, ParametrisedField, PoincareMaps,
+    across_in_units, cut_into, cyclic, eigenvalues_of, finely_cut, squares, unit_pair,
 };
 use nalgebra::Complex;
 use std::f64::consts::PI;
@@ -102,28 +102,30 @@ pub(super) fn classified(
     site: &ContinuationPoint,
     form: Form,
 ) -> (Uncertain, Criticality) {
-    let Some(coefficient) = coefficient(family, site, form) else {
+    let Some([followed, told]) = coefficient(family, site, form) else {
         return (Uncertain::new(0.0, f64::INFINITY), Criticality::Undecided);
     };
+    // To which side it goes does not depend on the units of length.
     let supercritical = match form {
-        Form::Doubling => coefficient.value > 0.0,
-        Form::Torus | Form::Pitchfork => coefficient.value < 0.0,
+        Form::Doubling => followed.value > 0.0,
+        Form::Torus | Form::Pitchfork => followed.value < 0.0,
     };
-    let criticality = if coefficient.value.abs() <= coefficient.uncertainty {
+    let criticality = if followed.value.abs() <= followed.uncertainty {
         Criticality::Undecided
     } else if supercritical {
         Criticality::Supercritical
     } else {
         Criticality::Subcritical
     };
-    (coefficient, criticality)
+    (told, criticality)
 }
 
+/// The coefficient for the length in the variables that are followed, and for that in the units in which it is told.
 fn coefficient(
     family: &dyn ParametrisedField,
     site: &ContinuationPoint,
     form: Form,
-) -> Option<Uncertain> {
+) -> Option<[Uncertain; 2]> {
     let site = finely_cut(family, site)?;
     let axes = match form {
         Form::Pitchfork => Axes::Symmetry,
@@ -133,7 +135,14 @@ fn coefficient(
         let cut = cut_into(parts, family, &site)?;
         let mut circle = Circle {
             maps: PoincareMaps::new(family, &cut, axes, tolerance)?,
-            squares: squares(family, &cut, axes)?,
+            squares: squares(family, &cut, axes, &|x, flow| family.across(x, flow))?,
+            told: match family.units() {
+                Some(units) => {
+                    let across = |_: &Vector, flow: &Vector| across_in_units(units, flow);
+                    Some(squares(family, &cut, axes, &across)?)
+                }
+                None => None,
+            },
             period: cut.shooting.period(),
         }
         .begun_at_the_top(axes);
@@ -142,11 +151,17 @@ fn coefficient(
             Form::Doubling => circle.doubling()?,
             Form::Pitchfork => circle.pitchfork()?,
         };
-        coefficient.is_finite().then_some(coefficient)
+        coefficient
+            .iter()
+            .all(|x| x.is_finite())
+            .then_some(coefficient)
     });
     let (first, second) = (first?, second?);
-    let uncertainty = SAFETY * (second - first).abs() + LEAST * first.abs();
-    Some(Uncertain::new(first, uncertainty))
+    Some([0, 1].map(|i| {
+        let (first, second) = (first[i], second[i]);
+        let uncertainty = SAFETY * (second - first).abs() + LEAST * first.abs();
+        Uncertain::new(first, uncertainty)
+    }))
 }
 
 /// An orbit with the maps around it.
@@ -154,6 +169,8 @@ struct Circle<'a> {
     maps: PoincareMaps<'a>,
     /// What the square of a displacement in a node's plane adds up to, over the arc that begins there.
     squares: Vec<Matrix>,
+    /// The same in the units in which lengths are told, where these are others.
+    told: Option<Vec<Matrix>>,
     period: f64,
 }
 
@@ -188,6 +205,9 @@ impl Circle<'_> {
             }
         }
         self.squares.rotate_left(top.0);
+        if let Some(told) = &mut self.told {
+            told.rotate_left(top.0);
+        }
         Circle {
             maps: self.maps.beginning_at(top.0),
             ..self
@@ -195,7 +215,7 @@ impl Circle<'_> {
     }
 
     /// b = <p, C(q,q,q) + 3 B(q, h)> / 6  (5.40)
-    fn doubling(&mut self) -> Option<f64> {
+    fn doubling(&mut self) -> Option<[f64; 2]> {
         let (mu, one) = (C::from(-1.0), C::from(1.0));
         if !self.doubles() {
             return None;
@@ -206,12 +226,13 @@ impl Circle<'_> {
         let cube = self.each(|maps, k| {
             Some(maps.third(k, &q[k])? + maps.second(k, &q[k], &h[k])? * C::from(3.0))
         })?;
-        Some((mu * self.solvability(mu, &p, &q, &cube)).re / 6.0 / self.mean_square(&q))
+        let cubic = (mu * self.solvability(mu, &p, &q, &cube)).re / 6.0;
+        Some(self.for_length_one(cubic, &q))
     }
 
     /// c = <p, C(q,q,q) + 3 B(q, h)> / 6, with q antisymmetric and h symmetric: each is one number in every plane. As products
     /// and quotients they keep their digits where small differences fall by fifty decades along the orbit.
-    fn pitchfork(&mut self) -> Option<f64> {
+    fn pitchfork(&mut self) -> Option<[f64; 2]> {
         let axis = |i: usize| CVector::from_fn(2, |j, _| C::from(f64::from(u8::from(i == j))));
         let (across, along) = (axis(0), axis(1));
         let mut q = vec![1.0];
@@ -238,21 +259,28 @@ impl Circle<'_> {
             sum += (third + 3.0 * mixed) * (q[k] / q[k + 1]);
         }
         let q: Vec<_> = q.iter().map(|&q| &across * C::from(q)).collect();
-        Some(sum / 6.0 / self.mean_square(&q))
+        Some(self.for_length_one(sum / 6.0, &q))
     }
 
-    /// The mean over the period of |q|^2.
-    fn mean_square(&self, q: &[CVector]) -> f64 {
+    /// A coefficient of q as one of an eigenvector of which the mean over the period of |q|^2 is 1, both ways in which that is measured.
+    fn for_length_one(&self, coefficient: f64, q: &[CVector]) -> [f64; 2] {
+        let followed = coefficient / self.mean_square(&self.squares, q);
+        let told = self.told.as_ref();
+        let told = told.map(|squares| coefficient / self.mean_square(squares, q));
+        [followed, told.unwrap_or(followed)]
+    }
+
+    fn mean_square(&self, squares: &[Matrix], q: &[CVector]) -> f64 {
         let of = |(q, square): (&CVector, &Matrix)| {
             let (re, im) = (q.map(|x| x.re), q.map(|x| x.im));
             re.dot(&(square * &re)) + im.dot(&(square * &im))
         };
-        let sum: f64 = q.iter().zip(&self.squares).map(of).sum();
+        let sum: f64 = q.iter().zip(squares).map(of).sum();
         sum / self.period
     }
 
     /// d = Re e^(-i theta) <p, C(q,q,q*) + 2 B(q, h11) + B(q*, h20)> / 2  (5.45)
-    fn torus(&mut self) -> Option<f64> {
+    fn torus(&mut self) -> Option<[f64; 2]> {
         let one = C::from(1.0);
         let mu = self.multiplier()?;
         let (q, p) = self.eigenvectors(mu)?;
@@ -268,7 +296,8 @@ impl Circle<'_> {
                     + maps.second(k, &conjugate[k], &h20[k])?,
             )
         })?;
-        Some(self.solvability(mu, &p, &q, &cube).re / 2.0 / self.mean_square(&q))
+        let cubic = self.solvability(mu, &p, &q, &cube).re / 2.0;
+        Some(self.for_length_one(cubic, &q))
     }
 
     fn each(

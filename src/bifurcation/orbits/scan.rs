@@ -164,7 +164,8 @@ impl Scan {
         let tracer = Tracer::limited(TOLERANCE, WORK, WORK)?;
         let mut corrector = Corrector::by(chart.family(), tracer);
         let settings = PalcSettings::branch(DRIVING, LONGEST);
-        let Ok(mut palc) = Palc::from_hopf(&mut corrector, settings, &hopfs[i]) else {
+        let beside = hopfs[i].small_orbits(chart.family());
+        let Ok(mut palc) = Palc::from_hopf(&mut corrector, settings, &beside) else {
             return Ok(());
         };
         let mut been = (from..=to).contains(&hopfs[i].at()[0]);

@@ -23,6 +23,13 @@ impl OrbitSearch for TextOrbitPlan {
         self.accuracies(orbit)
     }
 
+    fn absolute_tolerance(&self, accuracy: &OrbitAccuracy) -> Value {
+        match self.absolute_tolerances(accuracy) {
+            Some(each) => json!(each),
+            None => json!(accuracy.tolerances.atol),
+        }
+    }
+
     fn has_rows(&self) -> bool {
         self.rows.is_some()
     }

@@ -7,11 +7,12 @@ use crate::bifurcation::orbits::SpecialOrbit;
 use crate::bifurcation::{Criticality, Label};
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::Result;
-use crate::field::{Matrix, Vector};
-use crate::number::{Uncertain, null_vector};
+use crate::field::Vector;
+use crate::number::{Uncertain, eigenvector};
 use crate::orbit::ParametrisedField;
 use crate::scene::column::{CellValue, Column};
 use crate::scene::units::{Quantity, Units};
+use nalgebra::Complex;
 use std::f64::consts::TAU;
 
 /// What rows are of.
@@ -289,13 +290,9 @@ fn oscillation(family: &dyn ParametrisedField, point: &GeneralPoint) -> Option<[
     let GeneralSolution::Equilibrium { state, .. } = &point.solution else {
         return None;
     };
-    let frequency = TAU / point.period?.value;
-    let jacobian = family.field(point.at).jacobian(state);
-    let turned = Matrix::identity(state.len(), state.len()) * frequency.powi(2);
-    let along = null_vector(&jacobian * &jacobian + turned)?;
-    let across = jacobian * &along / frequency;
-    let length = along.norm().hypot(across.norm());
-    Some([along, across].map(|part| part / length))
+    let frequency = Complex::new(0.0, TAU / point.period?.value);
+    let q = eigenvector(&family.field(point.at).jacobian(state), frequency)?;
+    Some([q.map(|z| z.re), q.map(|z| z.im)])
 }
 
 fn criticality() -> Column<GeneralRow> {

@@ -91,15 +91,13 @@ impl TextSubject {
             _ => model.start(None).ok(),
         };
         let system = &model.system;
-        let units = match start {
-            Some(start) => MotionUnits::of(&model, &start)?,
-            None => MotionUnits::given(system.states().len()),
+        let units = match (start, &place) {
+            (Some(start), _) => MotionUnits::of(&model, &start)?,
+            (None, Some(SearchPlace::Within(ranges))) => MotionUnits::within(&model, ranges)?,
+            (None, _) => MotionUnits::given(system.states().len()),
         };
         Ok(TextSubject {
-            system: match model.slab {
-                Some(_) => system.clone(),
-                None => units.inward_system(system)?,
-            },
+            system: units.inward_system(system)?,
             units,
             model,
             place,

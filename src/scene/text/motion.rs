@@ -7,7 +7,7 @@ use crate::error::{Error, MessageUnits, Result};
 use crate::field::{Matrix, Vector};
 use crate::integrate::{AnyField, AnyIntegrator, AnyStep, Choice, Control, Tolerances};
 use crate::model::TextSystem;
-use crate::number::{Uncertain, eigenvalues, null_vector};
+use crate::number::{Interval, Uncertain, eigenvalues, eigenvector};
 use crate::orbit::{Crosscheck, Orbit, OrbitAccuracy};
 use std::borrow::Cow;
 
@@ -54,6 +54,26 @@ impl MotionUnits {
         }
     }
 
+    /// Of a box in which equilibria are looked for, where no start is known: a part of its widths, and the fastest rate in its middle.
+    ///
+    /// # Errors
+    /// Those of the field.
+    pub fn within(model: &TextModel, ranges: &[Interval]) -> Result<Self> {
+        /// A box is some times as wide as what moves in it.
+        const PART: f64 = 0.125;
+        if model.slab.is_some() {
+            return Ok(Self::given(ranges.len()));
+        }
+        let middle = ranges.iter().map(|range| 0.5 * (range.lo() + range.hi()));
+        let middle = Vector::from_iterator(ranges.len(), middle);
+        let widths = ranges.iter().map(|range| round(range.hi() - range.lo()));
+        let sizes = widths.map(|width| if width.is_normal() { PART * width } else { 1.0 });
+        Ok(MotionUnits {
+            sizes: sizes.collect(),
+            ..Self::at_start(&model.system, &middle)?
+        })
+    }
+
     /// Of a run from here: first in units of the state itself and of the fastest rate there, then in those that this run shows, from its end.
     ///
     /// # Errors
@@ -90,7 +110,7 @@ impl MotionUnits {
 
     /// Where a run from here ends, and the units that it shows; `None` where it fails.
     fn run(&self, system: &TextSystem, start: &Vector) -> Result<Option<(Vector, Self)>> {
-        let field = AnyField::of_text(Cow::Owned(self.inward_system(system)?))?;
+        let field = self.field(system)?;
         let tolerances = Tolerances::equal(ROUGH)?;
         let mut integrator = AnyIntegrator::new(Choice::Auto, tolerances, 2 * STEPS)?;
         let mut seen = Seen::of(start.len());
@@ -125,15 +145,12 @@ impl MotionUnits {
         system.in_units(&self.sizes, self.time)
     }
 
-    /// The field of a model in these units.
+    /// The field of a system in these units.
     ///
     /// # Errors
     /// Those of [`TextSystem::in_units`], and of the field.
-    pub fn field<'m>(&self, model: &'m TextModel) -> Result<AnyField<'m>> {
-        match model.slab {
-            Some(_) => model.field(),
-            None => AnyField::of_text(Cow::Owned(self.inward_system(&model.system)?)),
-        }
+    pub fn field(&self, system: &TextSystem) -> Result<AnyField<'static>> {
+        AnyField::of_text(Cow::Owned(self.inward_system(system)?))
     }
 
     /// A state in these units.
@@ -332,13 +349,5 @@ impl Seen {
 fn slowest_motion(jacobian: &Matrix) -> Option<Vector> {
     let all = eigenvalues(jacobian)?;
     let slowest = all.into_iter().max_by(|a, b| a.re.total_cmp(&b.re))?;
-    let count = jacobian.nrows();
-    let shifted = jacobian - Matrix::identity(count, count) * slowest.re;
-    if slowest.im == 0.0 {
-        return Some(null_vector(shifted)?.abs());
-    }
-    let turned = Matrix::identity(count, count) * slowest.im.powi(2);
-    let along = null_vector(&shifted * &shifted + turned)?;
-    let across = shifted * &along / slowest.im;
-    Some(along.zip_map(&across, f64::hypot))
+    Some(eigenvector(jacobian, slowest)?.map(|z| z.norm()))
 }

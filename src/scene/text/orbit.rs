@@ -128,9 +128,17 @@ impl TextOrbitPlan {
         Ok(found)
     }
 
+    /// What each state may err by in a step beside its relative error, in its own unit; `None` where one number is given for all, or for
+    /// interfaces.
+    pub fn absolute_tolerances(&self, accuracy: &OrbitAccuracy) -> Option<Vec<f64>> {
+        let own = !self.atol_is_given && self.model.slab.is_none();
+        let sizes = self.units.sizes.iter();
+        own.then(|| sizes.map(|size| size * accuracy.tolerances.atol).collect())
+    }
+
     /// The field in the units in which the orbit is looked for.
-    fn field(&self) -> Result<AnyField<'_>> {
-        self.units.field(&self.model)
+    fn field(&self) -> Result<AnyField<'static>> {
+        self.units.field(&self.model.system)
     }
 
     /// With its multipliers within clusters, by the method that it was found by.

@@ -72,6 +72,12 @@ pub fn null_vector<T: ComplexField<RealField = f64>>(matrix: DMatrix<T>) -> Opti
     Some(decomposed.v_t?.row(least).adjoint())
 }
 
+/// The unit vector q with A q = z q, of an eigenvalue z. `None` as of [`singular_values`].
+pub fn eigenvector(matrix: &DMatrix<f64>, z: Complex<f64>) -> Option<DVector<Complex<f64>>> {
+    let n = matrix.nrows();
+    null_vector(matrix.map(Complex::from) - DMatrix::identity(n, n) * z)
+}
+
 /// The matrix in coordinates that are reflected at a plane, a different one for each basis.
 fn reflected(matrix: &DMatrix<f64>, basis: usize) -> DMatrix<f64> {
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);

@@ -23,7 +23,9 @@ pub use difference::Difference;
 pub use double_double::DoubleDouble;
 #[cfg(target_arch = "x86_64")]
 pub(crate) use double_double::two_sum;
-pub use eigenvalues::{eigenvalues, null_vector, singular_values, symmetric_eigenvalues};
+pub use eigenvalues::{
+    eigenvalues, eigenvector, null_vector, singular_values, symmetric_eigenvalues,
+};
 pub use interval::Interval;
 pub use jet::Jet;
 pub use logarithm::{between_in_log, log_ratio};
