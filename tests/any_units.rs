@@ -1,6 +1,8 @@
 //! Systems from files in any units: the same points, periods and verdicts, and branches as long.
 
 use crate::command::{self, folder, number};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
 use serde_json::Value;
 use std::fs;
 
@@ -214,4 +216,146 @@ fn values_beside_a_hopf_point_are_landed_on() {
     let (points, _) = branch(arguments, "I");
     let landed = points.iter().filter(|(label, ..)| label == "UZ").count();
     assert_eq!(landed, 2, "{points:?}");
+}
+
+/// A formula with each state in its unit.
+fn in_units(formula: &str, units: &[(String, f64)]) -> String {
+    let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let mut made = String::new();
+    let mut rest = formula;
+    while let Some(first) = rest.chars().next() {
+        // Names, numbers and the rest by turns.
+        let end = rest.find(|c| is_name(c) != is_name(first));
+        let (word, after) = rest.split_at(end.unwrap_or(rest.len()));
+        match units.iter().find(|(name, _)| name == word) {
+            Some((name, unit)) => made += &format!("({unit:e}*{name})"),
+            None => made += word,
+        }
+        rest = after;
+    }
+    made
+}
+
+/// A model with its states and its time in units that are drawn from twelve decades; the unit of time.
+fn drawn(name: &str, random: &mut ChaCha8Rng) -> (String, f64) {
+    let text = fs::read_to_string(format!("tests/data/models/{name}.toml")).expect("a model");
+    let model: toml::Table = text.parse().expect("TOML");
+    let model = serde_json::to_value(model).expect("JSON");
+    let mut unit = || 10.0_f64.powf(12.0 * (random.next_u64() as f64 / u64::MAX as f64) - 6.0);
+    let states = model["states"].as_array().expect("states").iter();
+    let states = states.map(|name| name.as_str().expect("a name").to_owned());
+    let units: Vec<(String, f64)> = states.map(|name| (name, unit())).collect();
+    let time = unit();
+    let mut made = format!("name = {name:?}\nstates = {}\n", model["states"]);
+    for table in ["parameters", "where", "rates", "start"] {
+        let entries = model[table].as_object();
+        made += &format!("[{table}]\n");
+        for (name, entry) in entries.into_iter().flatten() {
+            let own = units.iter().find(|(state, _)| state == name);
+            let own = own.map_or(1.0, |(_, unit)| *unit);
+            let text = entry
+                .as_str()
+                .map_or_else(|| entry.to_string(), str::to_owned);
+            let scaled = match table {
+                "parameters" => entry.to_string(),
+                "where" => format!("{:?}", in_units(&text, &units)),
+                "rates" => format!("\"{time:e}*({})/{own:e}\"", in_units(&text, &units)),
+                _ => format!("{:e}", text.parse::<f64>().expect("a number") / own),
+            };
+            made += &format!("{name} = {scaled}\n");
+        }
+    }
+    let file = folder(&format!("any_units_{name}")).join("system.toml");
+    fs::write(&file, made).expect("a file");
+    (file.display().to_string(), time)
+}
+
+/// Models of mechanics, neuroscience, biochemistry, ecology and circuits.
+#[test]
+fn models_are_the_same_in_any_units() {
+    const ALL: [(&str, &str, f64, bool); 30] = [
+        ("chemostat-ciliate", "D", 0.0625, true),
+        ("circadian-per", "hr", 3600.0, true),
+        ("colpitts", "C", 5.4e-08, true),
+        ("connor-stevens", "I", 12.0, true),
+        ("cstr", "tau", 60.0, true),
+        ("goldbeter-lefever", "v", 0.7, true),
+        ("goldbeter-mitotic", "mi", 60.0, true),
+        ("goodwin", "n", 12.5, true),
+        // Its runs are chaotic for long: which of its orbits is met depends on rounding.
+        ("hastings-powell", "ba", 2.2, false),
+        ("hindmarsh-rose", "I", 2.0, true),
+        ("holling-tanner", "a", 1.0, true),
+        ("jansen-rit", "A", 3.25, true),
+        ("lengyel-epstein", "a", 10.0, true),
+        ("li-rinzel", "ip", 4e-07, true),
+        ("loladze", "b", 1.2, true),
+        ("mckean", "a", 0.25, true),
+        ("morris-lecar-si", "C", 0.2, true),
+        ("nf-kb", "A", 0.007, true),
+        ("repressilator", "al", 216.0, true),
+        ("rosenzweig-macarthur", "r", 0.5, true),
+        ("selkov", "a", 0.08, true),
+        ("sherman-beta-cell", "tau", 20.0, true),
+        ("stribeck-belt", "m", 1.0, true),
+        ("tsodyks-markram", "tau", 0.013, true),
+        ("tunnel-diode", "C", 5e-12, true),
+        ("wang-buzsaki", "phi", 5.0, true),
+        ("watt-governor", "al", 0.5, false),
+        ("wheel-shimmy", "I", 1.0, true),
+        ("wien-bridge", "R", 10000.0, true),
+        ("wilson-cowan", "tau", 0.008, true),
+    ];
+    let mut random = ChaCha8Rng::seed_from_u64(50);
+    for (name, parameter, value, oscillates) in ALL {
+        let (scaled, time) = drawn(name, &mut random);
+        let own = format!("tests/data/models/{name}.toml");
+        let along = format!(
+            "--along {parameter} --from {} --to {}",
+            0.7 * value,
+            1.3 * value
+        );
+        let points = |file: &str| {
+            let text = format!("branch equilibria --system {file} {along} --format json -q");
+            let ended = command::twinslip(&text);
+            let made: Value = serde_json::from_str(&ended.out).expect("JSON");
+            let special = made["result"]["special"]
+                .as_array()
+                .expect("a list")
+                .clone();
+            let mut points: Vec<(String, f64, f64)> = Vec::new();
+            for one in &special {
+                let at = &one[parameter];
+                let at =
+                    [&at["value"], &at["uncertainty"]].map(|x| x.as_f64().unwrap_or(f64::INFINITY));
+                points.push((
+                    one["label"].as_str().expect("a label").to_owned(),
+                    at[0],
+                    at[1],
+                ));
+            }
+            points.sort_by(|a, b| (a.1, &a.0).partial_cmp(&(b.1, &b.0)).expect("numbers"));
+            (ended.code, points)
+        };
+        let (known, found) = (points(&own), points(&scaled));
+        assert_eq!(known.0, found.0, "{name}");
+        assert_eq!(known.1.len(), found.1.len(), "{name}: {known:?} {found:?}");
+        for (a, b) in known.1.iter().zip(&found.1) {
+            assert_eq!(a.0, b.0, "{name}: {known:?} {found:?}");
+            assert!((a.1 - b.1).abs() <= a.2 + b.2, "{name}: {a:?} {b:?}");
+        }
+        if oscillates {
+            let [a, b] = [(own, 1.0), (scaled, time)].map(|(file, time)| {
+                let made = made(&format!("orbit --system {file} --crosscheck none"));
+                let of = |part: &str| time * number(&made, &format!("/result/orbit/period/{part}"));
+                (
+                    of("value"),
+                    of("uncertainty"),
+                    made["result"]["orbit"]["verdict"].clone(),
+                )
+            });
+            assert!((a.0 - b.0).abs() <= a.1 + b.1, "{name}: {a:?} {b:?}");
+            assert_eq!(a.2, b.2, "{name}");
+        }
+    }
 }
