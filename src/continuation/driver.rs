@@ -28,6 +28,8 @@ pub struct StepControl {
 const WINDOW: usize = 12;
 /// The least and largest ratio of one step to the one before.
 const RATIO: (f64, f64) = (0.5, 2.0);
+/// By how much less than it may the direction is made to turn in the next step.
+const SAFE: f64 = 0.8;
 /// A step that fails is shortened to this.
 const SHORTER: f64 = 0.4;
 /// For points between that can't be corrected no step is made shorter than this part of the longest.
@@ -138,15 +140,26 @@ impl<C: SolutionCurve> Continuation<C> {
     /// prediction along the tangent grows with its square (den Heijer and Rheinboldt 1981, SIAM J. Numer. Anal. 18, 925-948).
     fn step(&mut self) -> Result<CurveStep<C::Point>, Stop> {
         self.progresses()?;
+        let mut longest = self.control.longest;
         loop {
             let length = self.length;
             let failed = match self.curve.correct(&self.now, length) {
-                Ok((next, error)) if self.curve.cosine(&self.now, &next) > self.control.cosine => {
-                    let ratio = (self.control.error / error).sqrt();
-                    let ratio = ratio.clamp(RATIO.0, RATIO.1);
-                    return Ok(self.take(next, (length * ratio).min(self.control.longest)));
+                Ok((next, error)) => {
+                    let turn =
+                        self.control.cosine.acos() / self.curve.cosine(&self.now, &next).acos();
+                    // NaN where the direction does not turn at all.
+                    let by_turn = if turn.is_finite() {
+                        SAFE * turn
+                    } else {
+                        f64::INFINITY
+                    };
+                    if by_turn >= SAFE {
+                        let ratio = (self.control.error / error).sqrt().min(by_turn);
+                        let ratio = ratio.clamp(RATIO.0, RATIO.1);
+                        return Ok(self.take(next, (length * ratio).min(longest)));
+                    }
+                    None
                 }
-                Ok(_) => None,
                 Err(error) => Some(error),
             };
             let least = self.control.shortest * self.curve.scale(&self.now);
@@ -157,9 +170,10 @@ impl<C: SolutionCurve> Continuation<C> {
                     length,
                     because: failed,
                 });
-            } else {
-                self.length *= SHORTER;
             }
+            self.length *= SHORTER;
+            // What has just failed is not tried again in the next step.
+            longest = self.length;
         }
     }
 

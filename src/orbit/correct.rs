@@ -105,6 +105,8 @@ const STEP: f64 = 1e-6;
 const NEAR: f64 = 1.0;
 /// What a relative change of an arc's duration counts, where steps are chosen: the shortest arcs change by most.
 const STRETCH: f64 = 0.1;
+/// A correction of the time to the next plane that is a longer way there, in parts of the extents, is more than its slope says.
+const ARRIVED: f64 = 1e-4;
 /// A correction that shrinks by less than this asks for new gradients.
 const SLOW: f64 = 0.02;
 
@@ -136,8 +138,18 @@ impl<'a> Corrector<'a> {
 
     /// The linearisation at a site, with the derivatives in the parameters.
     pub(super) fn linear(&mut self, site: &ContinuationPoint) -> Option<Linear> {
-        let field = self.family.field(site.at);
-        let mut linear = Linear::of(&mut self.tracer, self.family, &field, &site.shooting).ok()?;
+        self.linear_in(None, site)
+    }
+
+    /// The same in the planes of an orbit nearby, if one is given.
+    fn linear_in(&mut self, planes: Option<&Linear>, site: &ContinuationPoint) -> Option<Linear> {
+        let (family, tracer) = (self.family, &mut self.tracer);
+        let field = family.field(site.at);
+        let linear = match planes {
+            None => Linear::of(tracer, family, &field, &site.shooting),
+            Some(planes) => planes.beside(tracer, &field, &site.shooting, &family.plane()),
+        };
+        let mut linear = linear.ok()?;
         drop(field);
         if !self.tracer.differentiates() {
             self.difference(site, &mut linear)?;
@@ -184,10 +196,37 @@ impl<'a> Corrector<'a> {
         conditions: &[Condition<'_>],
         goal: Goal,
     ) -> Result<Regular> {
+        self.correct_in(None, guess, free, conditions, goal)
+    }
+
+    /// The same by displacements in the planes of an orbit nearby. On a slow manifold the flow turns at a small distance from it, and the planes
+    /// across the flow at nodes that are off by that would turn from one iteration to the next.
+    ///
+    /// # Errors
+    /// Those of [`Self::correct`].
+    pub fn correct_beside(
+        &mut self,
+        orbit: &Regular,
+        guess: ContinuationPoint,
+        free: &[usize],
+        conditions: &[Condition<'_>],
+        goal: Goal,
+    ) -> Result<Regular> {
+        self.correct_in(Some(&orbit.linear), guess, free, conditions, goal)
+    }
+
+    fn correct_in(
+        &mut self,
+        planes: Option<&Linear>,
+        guess: ContinuationPoint,
+        free: &[usize],
+        conditions: &[Condition<'_>],
+        goal: Goal,
+    ) -> Result<Regular> {
         checked(conditions, self.family.dimension())?;
         guess.shooting.checked(self.family.dimension())?;
         let mut reached = (0, f64::INFINITY);
-        let found = self.newton(guess, free, conditions, goal, &mut reached);
+        let found = self.newton((planes, guess), free, conditions, goal, &mut reached);
         found.ok_or(Error::NotConverged {
             what: "the periodic orbit",
             iterations: reached.0,
@@ -199,7 +238,7 @@ impl<'a> Corrector<'a> {
     /// The same; `reached` are the iterations made and the last correction.
     fn newton(
         &mut self,
-        guess: ContinuationPoint,
+        (planes, guess): (Option<&Linear>, ContinuationPoint),
         free: &[usize],
         conditions: &[Condition<'_>],
         goal: Goal,
@@ -207,9 +246,20 @@ impl<'a> Corrector<'a> {
     ) -> Option<Regular> {
         let mut site = guess;
         let mut gradients: Option<Vec<TangentVector>> = None;
+        let mut ways = Vec::new();
         let (mut first, mut last) = (f64::INFINITY, f64::INFINITY);
         for iterations in 1..=goal.iterations {
-            let linear = self.linear(&site)?;
+            if let Some(planes) = planes {
+                let field = self.family.field(site.at);
+                let normals = |k| planes.normal(k);
+                let uncertain = |k: usize| ways.get(k).is_none_or(|&way| way > ARRIVED);
+                let tracer = &mut self.tracer;
+                site.shooting = site
+                    .shooting
+                    .arriving(tracer, &field, normals, uncertain)
+                    .ok()?;
+            }
+            let linear = self.linear_in(planes, &site)?;
             let (closing, along) = linear.solutions(free, self.family.scale(site.at))?;
             let spectrum = Spectrum::new(&linear);
             let known = match gradients.take() {
@@ -237,15 +287,25 @@ impl<'a> Corrector<'a> {
             }
             let size = size.max(stretch);
             let done = size < goal.done || (size < NOISE && size > 0.3 * last);
+            ways = linear.ways(&site.shooting, &correction.durations);
             site = site.moved(&correction, 1.0);
             if site.shooting.durations.iter().any(|&t| t <= 0.0) {
                 return None;
             }
             if done {
+                let (linear, along) = match planes {
+                    None => (linear, along),
+                    Some(_) => {
+                        let field = self.family.field(site.at);
+                        let linear = linear.upright(self.family, &field, &site.shooting);
+                        let (_, along) = linear.solutions(free, self.family.scale(site.at))?;
+                        (linear, along)
+                    }
+                };
                 return Some(Regular {
+                    spectrum: Spectrum::new(&linear),
                     site,
                     along,
-                    spectrum,
                     gradients: known,
                     iterations,
                     first,
@@ -399,7 +459,7 @@ impl<'a> Corrector<'a> {
         let beside = site.moved(direction, STEP);
         let field = self.family.field(beside.at);
         let moved = linear
-            .beside(&mut self.tracer, &field, &beside.shooting)
+            .beside(&mut self.tracer, &field, &beside.shooting, &[])
             .ok()?;
         Some(Spectrum::change(linear, spectrum, &moved, STEP))
     }

@@ -57,8 +57,7 @@ impl Linear {
         field: &AnyField<'_>,
         shooting: &ShootingNodes,
     ) -> Result<Self> {
-        let normal = |x: &Vector| frame(&family.normal(x, field.f(x)));
-        let frames = shooting.nodes.iter().map(normal).collect();
+        let frames = frames_of(family, field, shooting);
         Self::in_frames(
             tracer,
             field,
@@ -68,14 +67,26 @@ impl Linear {
         )
     }
 
-    /// The same in the planes of another linearisation nearby, so that the maps can be compared.
+    /// The same in the planes of another linearisation nearby, with derivatives in these parameters, if any.
     pub fn beside(
         &self,
         tracer: &mut Tracer,
         field: &AnyField<'_>,
         shooting: &ShootingNodes,
+        free: &[usize],
     ) -> Result<Self> {
-        Self::in_frames(tracer, field, shooting, &[], Shared::clone(&self.frames))
+        Self::in_frames(tracer, field, shooting, free, Shared::clone(&self.frames))
+    }
+
+    /// The same arcs in the family's planes at nodes that have come to lie at their ends.
+    pub fn upright(
+        &self,
+        family: &dyn ParametrisedField,
+        field: &AnyField<'_>,
+        shooting: &ShootingNodes,
+    ) -> Self {
+        let frames = Shared::new(frames_of(family, field, shooting));
+        Self::assembled(field, shooting, Shared::clone(&self.arcs), frames)
     }
 
     fn in_frames(
@@ -85,16 +96,26 @@ impl Linear {
         free: &[usize],
         frames: Shared<Vec<Matrix>>,
     ) -> Result<Self> {
-        let count = shooting.nodes.len();
-        let mut all = Vec::with_capacity(count);
+        let mut arcs = tracer.arcs(field, free)?;
+        let along = shooting.nodes.iter().zip(&shooting.durations);
+        let all = along.map(|(x, &duration)| arcs.arc(x, duration));
+        let all = all.collect::<Result<Vec<_>>>()?;
+        Ok(Self::assembled(field, shooting, Shared::new(all), frames))
+    }
+
+    fn assembled(
+        field: &AnyField<'_>,
+        shooting: &ShootingNodes,
+        arcs: Shared<Vec<Arc>>,
+        frames: Shared<Vec<Matrix>>,
+    ) -> Self {
+        let count = arcs.len();
         let mut logs = Vec::with_capacity(count);
         let mut maps = Vec::with_capacity(count);
         let mut gaps = Vec::with_capacity(count);
         let mut all_inflow = Vec::with_capacity(count);
         let mut all_slowness = Vec::with_capacity(count);
-        let mut arcs = tracer.arcs(field, free)?;
-        for (k, (x, &duration)) in shooting.nodes.iter().zip(&shooting.durations).enumerate() {
-            let arc = arcs.arc(x, duration)?;
+        for (k, arc) in arcs.iter().enumerate() {
             let next = (k + 1) % count;
             let onto = &frames[next];
             let normal = onto.column(0);
@@ -114,17 +135,16 @@ impl Linear {
             });
             all_inflow.push(inflow);
             all_slowness.push(slowness);
-            all.push(arc);
         }
-        Ok(Linear {
-            arcs: Shared::new(all),
+        Linear {
+            arcs,
             logs,
             frames,
             maps,
             gaps,
             inflow: Shared::new(all_inflow),
             slowness: Shared::new(all_slowness),
-        })
+        }
     }
 
     /// The same, whose gaps are not said.
@@ -143,6 +163,21 @@ impl Linear {
     /// The number of variables: one more than the planes have.
     pub fn dimension(&self) -> usize {
         self.frames[0].nrows()
+    }
+
+    /// How far such changes of the durations are at the ends of the arcs, in parts of how far each variable moves.
+    pub fn ways(&self, shooting: &ShootingNodes, durations: &[f64]) -> Vec<f64> {
+        let extents = shooting.sizes();
+        let arcs = self.inflow.iter().zip(&*self.slowness).zip(durations);
+        let way = |((inflow, slowness), change): ((&Vector, &f64), &f64)| {
+            inflow.component_div(&extents).amax() * (change / slowness).abs()
+        };
+        arcs.map(way).collect()
+    }
+
+    /// The normal of the plane at the k-th node, along the flow.
+    pub fn normal(&self, k: usize) -> Vector {
+        self.frames[k].column(0).into_owned()
     }
 
     /// ln of the largest growth along every arc.
@@ -362,6 +397,16 @@ fn underdetermined(
     };
     let kernel = (n..unknowns).map(|j| start(&q.column(j).into_owned()));
     Some((start(&(&q * y)), kernel.collect()))
+}
+
+/// The family's planes at all nodes.
+fn frames_of(
+    family: &dyn ParametrisedField,
+    field: &AnyField<'_>,
+    shooting: &ShootingNodes,
+) -> Vec<Matrix> {
+    let normal = |x: &Vector| frame(&family.normal(x, field.f(x)));
+    shooting.nodes.iter().map(normal).collect()
 }
 
 /// The columns of a frame that span the plane.

@@ -1,6 +1,7 @@
 //! Periodic orbits: Newton shooting on many nodes, and Floquet multipliers that can be trusted.
 
 mod arc;
+mod arrival;
 pub(crate) mod branch;
 mod certain;
 mod continuation_point;
@@ -30,6 +31,7 @@ mod shooting_nodes;
 mod small_orbits;
 mod solve;
 mod space;
+mod spread;
 mod switch;
 mod test_function;
 mod within;

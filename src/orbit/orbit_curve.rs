@@ -4,7 +4,6 @@ use super::certain::certain;
 use super::continuation_point::{ContinuationPoint, TangentVector};
 use super::correct::{Condition, Corrector, Goal, Regular};
 use super::linear::Linear;
-use super::shooting_nodes::ShootingMesh;
 use super::test_function::TestFunction;
 use crate::continuation::{self, Continuation, CurveStep, SolutionCurve, StepControl, Stop};
 use crate::error::{Error, Result};
@@ -64,11 +63,14 @@ const SHORTEST: f64 = 1e-7;
 /// What a first correction may be.
 const OFF: f64 = 0.03;
 /// The least cosine between the directions before and after a step.
-const TURN: f64 = 0.8;
+const TURN: f64 = 0.7;
 /// Progress of the last steps, as a part of the way.
 const PROGRESS: f64 = 5e-4;
 /// An arc of which a step would leave less than this vanishes.
 const SHRUNK: f64 = 0.08;
+/// By how much the time to the next plane is expected to change in a step, at most; and the period, which a second time around doubles.
+const STRETCH: f64 = 2.0;
+const LONGER: f64 = 1.8;
 /// A slope along a parameter that is small enough where it has no condition of its own.
 const FLAT: f64 = 1e-3;
 
@@ -216,23 +218,32 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
         DirectedPoint { here, direction }: &DirectedPoint,
         distance: f64,
     ) -> Result<(DirectedPoint, f64)> {
-        let predicted = here.site.moved(direction, distance);
+        let mut predicted = here.site.moved(direction, distance);
+        let by_planes = self.settings.test_function.is_none();
         let durations = here.site.shooting.durations.iter();
-        let mut durations = durations.zip(&predicted.shooting.durations);
-        if durations.any(|(now, then)| then / now < SHRUNK) {
-            return Err(Error::NotConverged {
-                what: "a step along which an arc of the orbit vanishes",
-                iterations: 0,
-                residual: f64::INFINITY,
-                tolerance: Goal::STEP.done,
-            });
+        for (now, then) in durations.zip(&mut predicted.shooting.durations) {
+            let stretch = *then / now;
+            if by_planes {
+                *then = now * stretch.clamp(1.0 / STRETCH, STRETCH);
+            } else if stretch < SHRUNK {
+                return Err(not_near("a step along which an arc of the orbit vanishes"));
+            }
         }
         let conditions = self.settings.and(Condition::Plane(direction, &predicted));
         // The gradients there, and not those of the orbit here: the direction depends on them.
         let free = &self.settings.free;
-        let next = self
-            .corrector
-            .correct(predicted.clone(), free, &conditions, Goal::STEP)?;
+        let next = if by_planes {
+            self.corrector
+                .correct_beside(here, predicted.clone(), free, &conditions, Goal::STEP)
+        } else {
+            self.corrector
+                .correct(predicted.clone(), free, &conditions, Goal::STEP)
+        };
+        let next = next?;
+        let periods = [&here, &&next].map(|orbit| orbit.site.shooting.period());
+        if (periods[1] / periods[0]).ln().abs() > LONGER.ln() {
+            return Err(not_near("a step to an orbit of about the same period"));
+        }
         let direction = self
             .settings
             .direction(&next, direction)
@@ -265,7 +276,7 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
 
     /// With the orbit's arcs cut anew where they have become uneven.
     fn taken(&mut self, to: &DirectedPoint) -> Result<Option<DirectedPoint>, Stop> {
-        if !uneven(&to.here) {
+        if !self.is_uneven(&to.here) {
             return Ok(None);
         }
         self.cut(to).map(Some).ok_or_else(no_nodes)
@@ -327,7 +338,12 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
     ) -> Option<(f64, DirectedPoint)> {
         let conditions = self.settings.and(watch.condition());
         let (site, free) = (near.here.site.clone(), &self.settings.free);
-        let found = self.corrector.correct(site, free, &conditions, Goal::STEP);
+        let found = if self.settings.test_function.is_none() {
+            self.corrector
+                .correct_beside(&near.here, site, free, &conditions, Goal::STEP)
+        } else {
+            self.corrector.correct(site, free, &conditions, Goal::STEP)
+        };
         let here = found.ok()?;
         let direction = self.settings.direction(&here, &near.direction);
         let direction = direction.unwrap_or_else(|| near.direction.clone());
@@ -351,6 +367,15 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
 }
 
 impl OrbitCurve<'_, '_> {
+    /// Whether the nodes had better be spread anew, or an arc grows by too much.
+    fn is_uneven(&self, orbit: &Regular) -> bool {
+        let linear = &orbit.linear;
+        let field = self.corrector.family.field(orbit.site.at);
+        let volumes = linear.logs.iter().map(|logs| logs.volume);
+        linear.growth().any(|growth| growth > GROWN)
+            || orbit.site.shooting.is_uneven(&field, volumes)
+    }
+
     /// The orbit with its arcs cut anew.
     fn cut(&mut self, DirectedPoint { here, direction }: &DirectedPoint) -> Option<DirectedPoint> {
         let site = &here.site;
@@ -358,7 +383,7 @@ impl OrbitCurve<'_, '_> {
         let field = self.corrector.family.field(site.at);
         let shooting = site
             .shooting
-            .cut(&mut self.corrector.tracer, &field, &ShootingMesh::FINE)
+            .spread(&mut self.corrector.tracer, &field)
             .ok()?;
         drop(field);
         let mut site = ContinuationPoint {
@@ -434,8 +459,12 @@ fn no_nodes() -> Stop {
 
 /// Where the continuation begins the curve has no direction.
 fn no_direction() -> Error {
+    not_near("the direction of the curve")
+}
+
+fn not_near(what: &'static str) -> Error {
     Error::NotConverged {
-        what: "the direction of the curve",
+        what,
         iterations: 0,
         residual: f64::INFINITY,
         tolerance: Goal::STEP.done,
@@ -444,7 +473,7 @@ fn no_direction() -> Error {
 
 /// ln of what an arc of a new mesh may grow by, and one of an old mesh.
 const GROWTH: f64 = 5.0;
-const GROWN: f64 = 8.0;
+const GROWN: f64 = 7.0;
 /// How often arcs are split for it.
 const SPLITS: usize = 6;
 
@@ -459,19 +488,4 @@ fn most_moved(along: &[TangentVector]) -> usize {
     (0..count)
         .max_by(|&a, &b| moved(a).total_cmp(&moved(b)))
         .unwrap_or(0)
-}
-
-/// Whether arcs take far more work than the others or than they should, or grow by too much.
-fn uneven(orbit: &Regular) -> bool {
-    /// Steps of an arc over the mean, and of the mean over what it should be.
-    const WORST: f64 = 2.5;
-    const MEAN: f64 = 1.6;
-    let arcs = &orbit.linear.arcs;
-    let count = arcs.len() as f64;
-    let mean = arcs.iter().map(|arc| arc.steps).sum::<usize>() as f64 / count;
-    let worst = arcs.iter().map(|arc| arc.steps).max().unwrap_or(0) as f64;
-    let most = mean.max(ShootingMesh::FINE.steps);
-    worst > WORST * most
-        || mean > MEAN * ShootingMesh::FINE.steps
-        || orbit.linear.growth().any(|g| g > GROWN)
 }

@@ -17,37 +17,11 @@ pub struct ShootingNodes {
 /// The end of an arc from a start over a duration, and the logarithm of what its tangent loses.
 pub type EndAndLoss<'a> = &'a mut dyn FnMut(&Vector, f64) -> Result<(Vector, f64)>;
 
-/// How a cycle is cut into arcs.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ShootingMesh {
-    /// The least and the largest number of nodes.
-    pub nodes: (usize, usize),
-    /// Steps on an arc, of the tracer's method.
-    pub steps: f64,
-    /// The change of ln |volume| on an arc.
-    pub volume: f64,
-    /// How far an arc goes at least, in parts of the extent of a variable and of the period together. Where a stiff orbit takes many steps on
-    /// the spot, a small displacement would be many times the duration of a shorter arc.
-    pub way: f64,
-}
-
-impl ShootingMesh {
-    /// For an orbit from a good guess: few arcs, which take the least time.
-    pub const COARSE: ShootingMesh = ShootingMesh {
-        nodes: (3, 128),
-        steps: 12.0,
-        volume: 3.0,
-        way: 0.0,
-    };
-    /// For orbits that are to move far: along short arcs Newton's method converges from farther away, and no node's plane is
-    /// missed by a smaller orbit as soon.
-    pub const FINE: ShootingMesh = ShootingMesh {
-        nodes: (12, 256),
-        steps: 5.0,
-        volume: 2.0,
-        way: 0.03,
-    };
-}
+/// The least and the largest number of nodes.
+const NODES: (usize, usize) = (3, 128);
+/// Steps on an arc, of the tracer's method, and the change of ln |volume|: few arcs, which take the least time from a good guess.
+const STEPS: f64 = 12.0;
+const VOLUME: f64 = 3.0;
 
 /// A step along a closed curve that is cut into arcs.
 struct TracedStep {
@@ -81,25 +55,6 @@ fn parts(steps: &[TracedStep]) -> Vec<f64> {
         (step.length / whole).min(1.0)
     };
     steps.iter().zip(&before).zip(&after).map(part).collect()
-}
-
-/// How far the curve goes along each step: by the variable that moves most, in parts of its extent, and in time, in parts of the period.
-fn ways(steps: &[TracedStep]) -> Vec<f64> {
-    let count = steps.first().map_or(0, |step| step.from.len());
-    let extent = |i: usize| {
-        let values = steps.iter().map(|step| step.from[i]);
-        let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
-            (a.min(x), b.max(x))
-        });
-        if most > least { most - least } else { 1.0 }
-    };
-    let extents = Vector::from_fn(count, |i, _| extent(i));
-    let period: f64 = steps.iter().map(|step| step.length).sum();
-    let next = steps.iter().cycle().skip(1);
-    let way = |(step, next): (&TracedStep, &TracedStep)| {
-        (&next.from - &step.from).component_div(&extents).amax() + step.length / period
-    };
-    steps.iter().zip(next).map(way).collect()
 }
 
 /// The largest loss on a refined arc, some four digits, and how often one is halved for it.
@@ -166,19 +121,6 @@ impl ShootingNodes {
     /// # Errors
     /// Those of the flow.
     pub fn meshed(&self, tracer: &mut Tracer, field: &AnyField<'_>) -> Result<Self> {
-        self.cut(tracer, field, &ShootingMesh::COARSE)
-    }
-
-    /// The same by another rule.
-    ///
-    /// # Errors
-    /// Those of the flow.
-    pub(super) fn cut(
-        &self,
-        tracer: &mut Tracer,
-        field: &AnyField<'_>,
-        mesh: &ShootingMesh,
-    ) -> Result<Self> {
         // No cut but at the ends of steps.
         let (mut steps, mut begin) = (Vec::new(), 0.0);
         for (start, &duration) in self.nodes.iter().zip(&self.durations) {
@@ -210,31 +152,24 @@ impl ShootingNodes {
             begin += duration;
         }
         let measures = steps.iter().zip(parts(&steps));
-        let measures = measures.map(|(step, part)| part / mesh.steps + step.volume / mesh.volume);
+        let measures = measures.map(|(step, part)| part / STEPS + step.volume / VOLUME);
         let measures: Vec<f64> = measures.collect();
         let all: f64 = measures.iter().sum();
-        let count = (all.ceil() as usize).clamp(mesh.nodes.0, mesh.nodes.1);
+        let count = (all.ceil() as usize).clamp(NODES.0, NODES.1);
         let (mut nodes, mut times) = (Vec::new(), Vec::new());
         let (each, mut last) = (all / count as f64, 0.0);
         let (mut before, mut next) = (0.0, 0.0);
-        let ways = ways(&steps);
-        let whole_way: f64 = ways.iter().sum();
-        let (mut gone, mut last_gone) = (0.0, 0.0);
-        for ((step, measure), way) in steps.into_iter().zip(measures).zip(ways) {
+        for (step, measure) in steps.into_iter().zip(measures) {
             // No arc is a short one, the last one neither.
-            let short = f64::min(before - last, all - before) < 0.5 * each
-                || f64::min(gone - last_gone, whole_way - gone) < mesh.way;
-            let short = short && !times.is_empty();
+            let short = f64::min(before - last, all - before) < 0.5 * each && !times.is_empty();
             if before + 0.5 * measure >= next && !short {
                 nodes.push(step.from);
                 times.push(step.begin);
-                last_gone = gone;
                 // A step of much measure takes the place of several arcs: what follows it is not cut the finer for that.
                 next = f64::max(next + each, before + 0.5 * each);
                 last = before;
             }
             before += measure;
-            gone += way;
         }
         times.push(begin);
         let durations = times.windows(2).map(|t| t[1] - t[0]).collect();

@@ -1,0 +1,121 @@
+//! Arcs that end where the flow comes to the plane of the next node, whatever time that takes.
+//!
+//! Along a slow motion before a fast one the time to go is known to less than the fast motion takes: an arc of a given duration would end
+//! anywhere along it.
+
+use super::arc::Tracer;
+use super::shooting_nodes::ShootingNodes;
+use crate::error::Result;
+use crate::field::Vector;
+use crate::integrate::{AnyField, Control};
+
+/// A plane through a node, with its normal along the flow, and how far each variable moves along the orbit.
+pub(super) struct Target<'a> {
+    pub node: &'a Vector,
+    pub normal: Vector,
+    pub extents: &'a Vector,
+    pub period: f64,
+}
+
+/// An arc comes to a plane within so many times what it took before; and as near to the node, in parts of the extents.
+const LATE: f64 = 8.0;
+const NEAR: f64 = 0.3;
+
+impl Target<'_> {
+    fn beyond(&self, x: &[f64]) -> f64 {
+        let each = x.iter().zip(self.node).zip(&self.normal);
+        each.map(|((x, node), normal)| (x - node) * normal).sum()
+    }
+
+    fn is_near(&self, x: &Vector) -> bool {
+        (x - self.node).component_div(self.extents).amax() < NEAR
+    }
+
+    /// The time from `start` to the plane, crossed with the flow: of several the one nearest to `expected`; `None` where it is not come to.
+    pub fn time_from(
+        &self,
+        tracer: &mut Tracer,
+        field: &AnyField<'_>,
+        start: &Vector,
+        expected: f64,
+    ) -> Result<Option<f64>> {
+        let mut found: Option<f64> = None;
+        let off = |time: f64| (time / expected).ln().abs();
+        let mut observer = |step: &crate::integrate::AnyStep<'_>| {
+            if found
+                .is_some_and(|found| off(found) < off(step.t0) && step.t0.abs() > expected.abs())
+            {
+                return Ok(Control::Stop);
+            }
+            let ends = [self.beyond(step.y0), self.beyond(step.y1)];
+            if !(ends[0] < 0.0 && ends[1] >= 0.0) {
+                return Ok(Control::Continue);
+            }
+            let at = zero((step.t0, ends[0]), (step.t1, ends[1]), |t| {
+                self.beyond(step.dense(t).as_slice())
+            });
+            if self.is_near(&step.dense(at)) && found.is_none_or(|found| off(at) < off(found)) {
+                found = Some(at);
+            }
+            Ok(match found {
+                Some(found) if found.abs() >= expected.abs() => Control::Stop,
+                _ => Control::Continue,
+            })
+        };
+        let latest = (LATE * expected.abs()).min(expected.abs() + 0.5 * self.period);
+        tracer.flow(field, start, latest.copysign(expected), Some(&mut observer))?;
+        Ok(found)
+    }
+}
+
+/// A zero between two values of opposite signs: by the secant with the Illinois rule.
+fn zero(mut a: (f64, f64), mut b: (f64, f64), f: impl Fn(f64) -> f64) -> f64 {
+    const ITERATIONS: usize = 60;
+    for _ in 0..ITERATIONS {
+        let t = b.0 - b.1 * (b.0 - a.0) / (b.1 - a.1);
+        if t == a.0 || t == b.0 || !t.is_finite() {
+            break;
+        }
+        let value = f(t);
+        if value * b.1 <= 0.0 {
+            a = b;
+        } else {
+            a.1 *= 0.5;
+        }
+        b = (t, value);
+        if value == 0.0 {
+            break;
+        }
+    }
+    b.0
+}
+
+impl ShootingNodes {
+    /// The same nodes with the times that the flow takes from each to the plane of the next, where it comes there, on the arcs for which
+    /// `uncertain` says so.
+    ///
+    /// # Errors
+    /// Those of the flow.
+    pub(super) fn arriving(
+        mut self,
+        tracer: &mut Tracer,
+        field: &AnyField<'_>,
+        normals: impl Fn(usize) -> Vector,
+        uncertain: impl Fn(usize) -> bool,
+    ) -> Result<Self> {
+        let (extents, period) = (self.sizes(), self.period().abs());
+        let count = self.nodes.len();
+        for k in (0..count).filter(|&k| uncertain(k)) {
+            let next = (k + 1) % count;
+            let target = Target {
+                node: &self.nodes[next],
+                normal: normals(next),
+                extents: &extents,
+                period,
+            };
+            let time = target.time_from(tracer, field, &self.nodes[k], self.durations[k])?;
+            self.durations[k] = time.unwrap_or(self.durations[k]);
+        }
+        Ok(self)
+    }
+}

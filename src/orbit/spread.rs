@@ -1,0 +1,194 @@
+//! Where the nodes of an orbit stand that is followed along a curve: spread over it by how far it goes, and away from its corners.
+//!
+//! At a corner, where a fast motion begins or ends, the plane across the flow sees the neighbouring orbits under any angle: a small
+//! displacement there is no small one of the orbit.
+
+use super::arc::Tracer;
+use super::shooting_nodes::ShootingNodes;
+use crate::error::Result;
+use crate::field::Vector;
+use crate::integrate::{AnyField, AnyStep, Control};
+use crate::number::eigenvalues;
+
+/// The least and the largest number of nodes.
+const NODES: (usize, usize) = (12, 256);
+/// How far an arc goes: by the variable that moves most, in parts of its extent, and in time, in parts of the period.
+const WAY: f64 = 0.25;
+/// What ln |volume| changes by on an arc, where the multipliers are told from maps: half of the digits.
+const VOLUME: f64 = 15.0;
+/// ln of what a displacement may grow by on an arc. Where a displacement grows along a slow motion, what is off in the start is soon off it altogether.
+const GROWTH: f64 = 4.0;
+/// A curve that turns on less than this way has a corner.
+const CORNER: f64 = 0.1;
+/// How far a node may stand from where it would by the measure alone, in parts of an arc.
+const ASIDE: f64 = 0.45;
+
+/// A step along the orbit.
+struct TracedStep {
+    begin: f64,
+    length: f64,
+    from: Vector,
+    /// The integral of |trace|.
+    volume: f64,
+    /// What grows most along it, as a logarithm.
+    growth: f64,
+}
+
+/// The units in which the way of an orbit is measured: how far each variable moves, and the period.
+struct Extents {
+    states: Vector,
+    period: f64,
+}
+
+impl Extents {
+    fn of<'a>(points: impl Iterator<Item = &'a Vector> + Clone, period: f64) -> Self {
+        let count = points.clone().next().map_or(0, |x| x.len());
+        let extent = |i: usize| {
+            let values = points.clone().map(|x| x[i]);
+            let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
+                (a.min(x), b.max(x))
+            });
+            if most > least { most - least } else { 1.0 }
+        };
+        Extents {
+            states: Vector::from_fn(count, |i, _| extent(i)),
+            period,
+        }
+    }
+
+    fn way(&self, from: &Vector, to: &Vector, length: f64) -> f64 {
+        (to - from).component_div(&self.states).amax() + length / self.period
+    }
+
+    /// The way on which the curve turns here: its radius of curvature, with time as one more coordinate.
+    fn radius(&self, field: &AnyField<'_>, x: &Vector) -> f64 {
+        let flow = field.f(x);
+        let change = (field.jacobian(x) * &flow).component_div(&self.states);
+        let flow = flow.component_div(&self.states);
+        let speed = flow.norm_squared() + self.period.powi(-2);
+        let along = flow.dot(&change) / speed;
+        // What of the change is across; time itself does not change.
+        let across = (change - &flow * along).norm_squared() + (along / self.period).powi(2);
+        speed / across.sqrt()
+    }
+}
+
+impl ShootingNodes {
+    /// The same orbit with its nodes spread anew.
+    ///
+    /// # Errors
+    /// Those of the flow.
+    pub(super) fn spread(&self, tracer: &mut Tracer, field: &AnyField<'_>) -> Result<Self> {
+        let steps = self.traced(tracer, field)?;
+        let period = self.period();
+        let extents = Extents::of(steps.iter().map(|step| &step.from), period);
+        let next = steps.iter().cycle().skip(1);
+        let measures = steps.iter().zip(next).map(|(step, next)| {
+            let way = extents.way(&step.from, &next.from, step.length);
+            measure(self.dimension(), way, step.volume) + step.growth / GROWTH
+        });
+        let ends: Vec<f64> = measures
+            .scan(0.0, |sum, measure| {
+                *sum += measure;
+                Some(*sum)
+            })
+            .collect();
+        let all = ends.last().copied().unwrap_or(0.0);
+        let count = (all.ceil() as usize).clamp(NODES.0, NODES.1);
+        let each = all / count as f64;
+        let mut begins = std::iter::once(0.0).chain(ends).zip(&steps).peekable();
+        let (mut nodes, mut times) = (Vec::new(), Vec::new());
+        for k in 0..count {
+            let middle = (k as f64 + 0.5) * each;
+            let mut best: Option<(f64, &TracedStep)> = None;
+            while let Some((at, step)) = begins.next_if(|(at, _)| *at < middle + ASIDE * each) {
+                let aside = (at - middle).abs() / each;
+                if aside > ASIDE {
+                    continue;
+                }
+                let corner = (CORNER / extents.radius(field, &step.from)).max(1.0);
+                let cost = corner * (1.0 + aside * aside);
+                if best.is_none_or(|(least, _)| cost < least) {
+                    best = Some((cost, step));
+                }
+            }
+            // A step of much measure takes the place of several arcs.
+            if let Some((_, step)) = best {
+                nodes.push(step.from.clone());
+                times.push(step.begin);
+            }
+        }
+        let again = times.first().map(|first| first + period);
+        let ends = times.iter().copied().skip(1).chain(again);
+        let durations = times.iter().zip(ends).map(|(from, to)| to - from).collect();
+        Ok(ShootingNodes { nodes, durations })
+    }
+
+    /// All steps once around, none across a node.
+    fn traced(&self, tracer: &mut Tracer, field: &AnyField<'_>) -> Result<Vec<TracedStep>> {
+        let (mut steps, mut begin) = (Vec::new(), 0.0);
+        for (start, &duration) in self.nodes.iter().zip(&self.durations) {
+            let mut trace = field.trace(start.as_slice()).abs();
+            let mut from = start.clone();
+            let mut observer = |step: &AnyStep<'_>| {
+                let next = field.trace(step.y1).abs();
+                let length = (step.t1 - step.t0).abs();
+                steps.push(TracedStep {
+                    begin: begin + step.t0,
+                    length,
+                    growth: growth_rate(field, &from) * length,
+                    from: std::mem::replace(&mut from, Vector::from_column_slice(step.y1)),
+                    volume: 0.5 * (trace + next) * length,
+                });
+                trace = next;
+                Ok(Control::Continue)
+            };
+            tracer.flow(field, start, duration, Some(&mut observer))?;
+            begin += duration;
+        }
+        Ok(steps)
+    }
+
+    /// Whether its nodes had better be spread anew: an arc takes far more than its part, or a node has come to a corner.
+    pub(super) fn is_uneven(
+        &self,
+        field: &AnyField<'_>,
+        volumes: impl Iterator<Item = f64>,
+    ) -> bool {
+        /// The measure of an arc over the mean; and the part of a corner's way on which the curve may turn at a node.
+        const WORST: f64 = 3.0;
+        const SHARP: f64 = 0.1;
+        let extents = Extents::of(self.nodes.iter(), self.period());
+        let next = self.nodes.iter().cycle().skip(1);
+        let arcs = self
+            .nodes
+            .iter()
+            .zip(next)
+            .zip(&self.durations)
+            .zip(volumes);
+        let measures = arcs.map(|(((from, to), &length), volume)| {
+            measure(
+                self.dimension(),
+                extents.way(from, to, length),
+                volume.abs(),
+            )
+        });
+        let measures: Vec<f64> = measures.collect();
+        let mean = measures.iter().sum::<f64>() / measures.len() as f64;
+        let worst = measures.into_iter().fold(0.0, f64::max);
+        let sharp = |x: &Vector| extents.radius(field, x) < SHARP * CORNER;
+        worst > WORST * mean.max(1.0) || self.nodes.iter().any(sharp)
+    }
+}
+
+/// How fast a displacement of this point grows, if any does.
+fn growth_rate(field: &AnyField<'_>, x: &Vector) -> f64 {
+    let rates = eigenvalues(&field.jacobian(x)).into_iter().flatten();
+    rates.fold(0.0, |most, rate| f64::max(most, rate.re))
+}
+
+/// How many arcs a piece is worth. In three dimensions the trace of the Jacobian and one of the map tell both multipliers.
+fn measure(dimension: usize, way: f64, volume: f64) -> f64 {
+    let volume = if dimension > 3 { volume } else { 0.0 };
+    way / WAY + volume / VOLUME
+}
