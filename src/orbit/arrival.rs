@@ -7,19 +7,31 @@ use super::arc::Tracer;
 use super::shooting_nodes::ShootingNodes;
 use crate::error::Result;
 use crate::field::Vector;
-use crate::integrate::{AnyField, Control};
+use crate::integrate::{AnyField, AnyStep, Control};
 
 /// A plane through a node, with its normal along the flow, and how far each variable moves along the orbit.
-pub(super) struct Target<'a> {
-    pub node: &'a Vector,
-    pub normal: Vector,
-    pub extents: &'a Vector,
-    pub period: f64,
+struct Target<'a> {
+    node: &'a Vector,
+    normal: Vector,
+    extents: &'a Vector,
+    period: f64,
 }
 
 /// An arc comes to a plane within so many times what it took before; and as near to the node, in parts of the extents.
 const LATE: f64 = 8.0;
 const NEAR: f64 = 0.3;
+/// What is farther from the node than this has left the orbit for good.
+const FAR: f64 = 4.0;
+
+/// What becomes of the flow from a node.
+enum Arrival {
+    /// It comes to the plane after this time.
+    After(f64),
+    /// It does not, but stays where the orbit is.
+    Astray,
+    /// It leaves for far away.
+    Lost,
+}
 
 impl Target<'_> {
     fn beyond(&self, x: &[f64]) -> f64 {
@@ -27,24 +39,29 @@ impl Target<'_> {
         each.map(|((x, node), normal)| (x - node) * normal).sum()
     }
 
-    fn is_near(&self, x: &Vector) -> bool {
-        (x - self.node).component_div(self.extents).amax() < NEAR
+    fn away(&self, x: &Vector) -> f64 {
+        (x - self.node).component_div(self.extents).amax()
     }
 
-    /// The time from `start` to the plane, crossed with the flow: of several the one nearest to `expected`; `None` where it is not come to.
-    pub fn time_from(
+    /// The time from `start` to the plane, crossed with the flow: of several the one nearest to `expected`.
+    fn time_from(
         &self,
         tracer: &mut Tracer,
         field: &AnyField<'_>,
         start: &Vector,
         expected: f64,
-    ) -> Result<Option<f64>> {
+    ) -> Result<Arrival> {
+        let mut lost = false;
         let mut found: Option<f64> = None;
         let off = |time: f64| (time / expected).ln().abs();
-        let mut observer = |step: &crate::integrate::AnyStep<'_>| {
+        let mut observer = |step: &AnyStep<'_>| {
             if found
                 .is_some_and(|found| off(found) < off(step.t0) && step.t0.abs() > expected.abs())
             {
+                return Ok(Control::Stop);
+            }
+            lost = self.away(&Vector::from_column_slice(step.y1)) > FAR;
+            if lost {
                 return Ok(Control::Stop);
             }
             let ends = [self.beyond(step.y0), self.beyond(step.y1)];
@@ -54,7 +71,7 @@ impl Target<'_> {
             let at = zero((step.t0, ends[0]), (step.t1, ends[1]), |t| {
                 self.beyond(step.dense(t).as_slice())
             });
-            if self.is_near(&step.dense(at)) && found.is_none_or(|found| off(at) < off(found)) {
+            if self.away(&step.dense(at)) < NEAR && found.is_none_or(|found| off(at) < off(found)) {
                 found = Some(at);
             }
             Ok(match found {
@@ -64,7 +81,11 @@ impl Target<'_> {
         };
         let latest = (LATE * expected.abs()).min(expected.abs() + 0.5 * self.period);
         tracer.flow(field, start, latest.copysign(expected), Some(&mut observer))?;
-        Ok(found)
+        Ok(match found {
+            Some(time) => Arrival::After(time),
+            None if lost => Arrival::Lost,
+            None => Arrival::Astray,
+        })
     }
 }
 
@@ -92,7 +113,7 @@ fn zero(mut a: (f64, f64), mut b: (f64, f64), f: impl Fn(f64) -> f64) -> f64 {
 
 impl ShootingNodes {
     /// The same nodes with the times that the flow takes from each to the plane of the next, where it comes there, on the arcs for which
-    /// `uncertain` says so.
+    /// `uncertain` says so; `None` where it leaves for far away.
     ///
     /// # Errors
     /// Those of the flow.
@@ -102,7 +123,7 @@ impl ShootingNodes {
         field: &AnyField<'_>,
         normals: impl Fn(usize) -> Vector,
         uncertain: impl Fn(usize) -> bool,
-    ) -> Result<Self> {
+    ) -> Result<Option<Self>> {
         let (extents, period) = (self.sizes(), self.period().abs());
         let count = self.nodes.len();
         for k in (0..count).filter(|&k| uncertain(k)) {
@@ -113,9 +134,12 @@ impl ShootingNodes {
                 extents: &extents,
                 period,
             };
-            let time = target.time_from(tracer, field, &self.nodes[k], self.durations[k])?;
-            self.durations[k] = time.unwrap_or(self.durations[k]);
+            match target.time_from(tracer, field, &self.nodes[k], self.durations[k])? {
+                Arrival::After(time) => self.durations[k] = time,
+                Arrival::Astray => {}
+                Arrival::Lost => return Ok(None),
+            }
         }
-        Ok(self)
+        Ok(Some(self))
     }
 }

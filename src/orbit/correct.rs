@@ -74,7 +74,7 @@ impl Regular {
 /// When a correction is at its end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Goal {
-    /// The size of a correction that is the last. It is made, so that the error left is of the order of its square.
+    /// The size of a correction that is the last. It is made, and the error left is of the order of its square.
     pub done: f64,
     /// Iterations, at most.
     pub iterations: usize,
@@ -257,7 +257,7 @@ impl<'a> Corrector<'a> {
                 site.shooting = site
                     .shooting
                     .arriving(tracer, &field, normals, uncertain)
-                    .ok()?;
+                    .ok()??;
             }
             let linear = self.linear_in(planes, &site)?;
             let (closing, along) = linear.solutions(free, self.family.scale(site.at))?;
@@ -286,7 +286,10 @@ impl<'a> Corrector<'a> {
                 first = size.max(STRETCH * stretch);
             }
             let size = size.max(stretch);
-            let done = size < goal.done || (size < NOISE && size > 0.3 * last);
+            // What a step of quadratic convergence leaves, by how the last one went.
+            let left = size * (size / last).powi(2);
+            let left_is_small = iterations == 1 || size < NOISE || left < goal.done.powi(2);
+            let done = (size < goal.done && left_is_small) || (size < NOISE && size > 0.3 * last);
             ways = linear.ways(&site.shooting, &correction.durations);
             site = site.moved(&correction, 1.0);
             if site.shooting.durations.iter().any(|&t| t <= 0.0) {

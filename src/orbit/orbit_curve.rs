@@ -4,6 +4,7 @@ use super::certain::certain;
 use super::continuation_point::{ContinuationPoint, TangentVector};
 use super::correct::{Condition, Corrector, Goal, Regular};
 use super::linear::Linear;
+use super::spread::Spread;
 use super::test_function::TestFunction;
 use crate::continuation::{self, Continuation, CurveStep, SolutionCurve, StepControl, Stop};
 use crate::error::{Error, Result};
@@ -59,13 +60,13 @@ pub type Palc<'c, 'f> = Continuation<OrbitCurve<'c, 'f>>;
 
 /// Lengths of the first and of the shortest steps; of orbits smaller than 1 the shortest is this part of their extent.
 const FIRST: f64 = 0.02;
-const SHORTEST: f64 = 1e-7;
+const SHORTEST: f64 = 1e-8;
 /// What a first correction may be.
 const OFF: f64 = 0.03;
 /// The least cosine between the directions before and after a step.
 const TURN: f64 = 0.7;
 /// Progress of the last steps, as a part of the way.
-const PROGRESS: f64 = 5e-4;
+const PROGRESS: f64 = 2e-7;
 /// An arc of which a step would leave less than this vanishes.
 const SHRUNK: f64 = 0.08;
 /// By how much the time to the next plane is expected to change in a step, at most; and the period, which a second time around doubles.
@@ -373,7 +374,17 @@ impl OrbitCurve<'_, '_> {
         let field = self.corrector.family.field(orbit.site.at);
         let volumes = linear.logs.iter().map(|logs| logs.volume);
         linear.growth().any(|growth| growth > GROWN)
-            || orbit.site.shooting.is_uneven(&field, volumes)
+            || orbit
+                .site
+                .shooting
+                .is_uneven(&field, self.spread(), volumes)
+    }
+
+    fn spread(&self) -> Spread {
+        match self.settings.test_function {
+            None => Spread::BRANCH,
+            Some(_) => Spread::CURVE,
+        }
     }
 
     /// The orbit with its arcs cut anew.
@@ -381,9 +392,10 @@ impl OrbitCurve<'_, '_> {
         let site = &here.site;
         let old = (site, direction);
         let field = self.corrector.family.field(site.at);
+        let spread = self.spread();
         let shooting = site
             .shooting
-            .spread(&mut self.corrector.tracer, &field)
+            .spread(&mut self.corrector.tracer, &field, spread)
             .ok()?;
         drop(field);
         let mut site = ContinuationPoint {

@@ -12,10 +12,36 @@ use crate::number::eigenvalues;
 
 /// The least and the largest number of nodes.
 const NODES: (usize, usize) = (12, 256);
-/// How far an arc goes: by the variable that moves most, in parts of its extent, and in time, in parts of the period.
-const WAY: f64 = 0.25;
-/// What ln |volume| changes by on an arc, where the multipliers are told from maps: half of the digits.
-const VOLUME: f64 = 15.0;
+/// How long arcs are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Spread {
+    /// How far an arc goes: by the variable that moves most, in parts of its extent, and in time, in parts of the period.
+    way: f64,
+    /// What ln |volume| changes by on an arc, from so many dimensions on.
+    volume: (f64, usize),
+}
+
+impl Spread {
+    /// Along a branch: few arcs, which take the least time. In three dimensions the trace of the Jacobian and one of the map tell both
+    /// multipliers; in more the conditions are functions of the maps.
+    pub const BRANCH: Spread = Spread {
+        way: 0.25,
+        volume: (4.0, 4),
+    };
+    /// Along a curve of bifurcations, whose condition is a function of the maps.
+    pub const CURVE: Spread = Spread {
+        way: 0.12,
+        volume: (2.0, 2),
+    };
+
+    /// How many arcs a piece is worth.
+    fn arcs(&self, dimension: usize, way: f64, volume: f64) -> f64 {
+        let (most, from) = self.volume;
+        let of_volume = if dimension < from { 0.0 } else { volume / most };
+        way / self.way + of_volume
+    }
+}
+
 /// ln of what a displacement may grow by on an arc. Where a displacement grows along a slow motion, what is off in the start is soon off it altogether.
 const GROWTH: f64 = 4.0;
 /// A curve that turns on less than this way has a corner.
@@ -78,14 +104,19 @@ impl ShootingNodes {
     ///
     /// # Errors
     /// Those of the flow.
-    pub(super) fn spread(&self, tracer: &mut Tracer, field: &AnyField<'_>) -> Result<Self> {
+    pub(super) fn spread(
+        &self,
+        tracer: &mut Tracer,
+        field: &AnyField<'_>,
+        spread: Spread,
+    ) -> Result<Self> {
         let steps = self.traced(tracer, field)?;
         let period = self.period();
         let extents = Extents::of(steps.iter().map(|step| &step.from), period);
         let next = steps.iter().cycle().skip(1);
         let measures = steps.iter().zip(next).map(|(step, next)| {
             let way = extents.way(&step.from, &next.from, step.length);
-            measure(self.dimension(), way, step.volume) + step.growth / GROWTH
+            spread.arcs(self.dimension(), way, step.volume) + step.growth / GROWTH
         });
         let ends: Vec<f64> = measures
             .scan(0.0, |sum, measure| {
@@ -153,6 +184,7 @@ impl ShootingNodes {
     pub(super) fn is_uneven(
         &self,
         field: &AnyField<'_>,
+        spread: Spread,
         volumes: impl Iterator<Item = f64>,
     ) -> bool {
         /// The measure of an arc over the mean; and the part of a corner's way on which the curve may turn at a node.
@@ -167,7 +199,7 @@ impl ShootingNodes {
             .zip(&self.durations)
             .zip(volumes);
         let measures = arcs.map(|(((from, to), &length), volume)| {
-            measure(
+            spread.arcs(
                 self.dimension(),
                 extents.way(from, to, length),
                 volume.abs(),
@@ -185,10 +217,4 @@ impl ShootingNodes {
 fn growth_rate(field: &AnyField<'_>, x: &Vector) -> f64 {
     let rates = eigenvalues(&field.jacobian(x)).into_iter().flatten();
     rates.fold(0.0, |most, rate| f64::max(most, rate.re))
-}
-
-/// How many arcs a piece is worth. In three dimensions the trace of the Jacobian and one of the map tell both multipliers.
-fn measure(dimension: usize, way: f64, volume: f64) -> f64 {
-    let volume = if dimension > 3 { volume } else { 0.0 };
-    way / WAY + volume / VOLUME
 }

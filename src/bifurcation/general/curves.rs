@@ -146,6 +146,30 @@ fn pass(system: &GeneralSystem<'_>, state: &Vector, at: [f64; 2]) -> Vector {
     system.representative(state).push(at[0]).push(at[1])
 }
 
+/// What a special point is known by.
+struct Landmark {
+    label: Option<Label>,
+    place: Vector,
+}
+
+impl Landmark {
+    fn of(point: &GeneralPoint) -> Self {
+        let state = match &point.solution {
+            GeneralSolution::Equilibrium { state, .. } => state.clone(),
+            _ => Vector::zeros(0),
+        };
+        Landmark {
+            label: point.label,
+            place: state.push(point.at[0]).push(point.at[1]),
+        }
+    }
+
+    fn is(&self, other: &Self) -> bool {
+        let mut pairs = self.place.iter().zip(&other.place);
+        self.label == other.label && pairs.all(|(a, b)| (a - b).abs() < SAME * (1.0 + a.abs()))
+    }
+}
+
 struct EquilibriumCurves<'c, 'a> {
     curve: &'c GeneralCurve<'a>,
     kind: EquilibriumBifurcation,
@@ -261,7 +285,7 @@ impl EquilibriumCurves<'_, '_> {
             range: ranges[0],
             wanted: values(0),
         };
-        let (mut begun, mut last) = (false, None);
+        let (mut begun, mut begin, mut last) = (false, None, None);
         let passes = &mut self.passes;
         let followed =
             curve.follow_within((state, at), growing, &settings, &first, &mut |found| {
@@ -281,6 +305,13 @@ impl EquilibriumCurves<'_, '_> {
                 // No curve ends where it is begun.
                 let label = found.label.filter(|label| !begins || *label != Label::Ep);
                 let point = self::point(system.family, number, found, label);
+                // A special point that the curve begins at may be met once more, where what is zero there is not quite.
+                let landmark = label.is_some().then(|| Landmark::of(&point));
+                if begins {
+                    begin = landmark;
+                } else if landmark.is_some_and(|one| begin.as_ref().is_some_and(|b| b.is(&one))) {
+                    return Continue(());
+                }
                 last = Some(point.clone());
                 seen(point, label.is_some())?;
                 // Beyond it there are neutral saddles.

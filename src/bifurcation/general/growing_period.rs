@@ -16,16 +16,15 @@ use crate::number::{Uncertain, eigenvalues};
 use crate::orbit::{Regular, ShootingNodes, Tracer};
 use std::ops::ControlFlow::Continue;
 
-/// Orbits that are looked at, the last ones.
+/// Orbits that are looked at: the last one, and others before it, from each of which to the next what is left of the way falls by so much.
 const LAST: usize = 3;
+const APART: f64 = 1.3;
 /// The way to the limit is at most this part of the branch's.
 const NEAR: f64 = 1e-2;
 /// Two pairs of orbits agree on the limit to this part of the way that the first pair sees before it.
 const AGREE: f64 = 0.2;
 /// An equilibrium that an orbit passes is nearer than this to where it is slowest, in parts of the extent of the orbit.
 const PASSED: f64 = 0.1;
-/// In the time by which the last periods differ what is left of the way falls by more than a factor e to this.
-const SEEN: f64 = 0.5;
 
 /// The coordinates and the periods of the orbits of a branch, as it goes.
 #[derive(Debug, Default)]
@@ -45,26 +44,14 @@ impl Periods {
     /// The limit of the coordinate at the end of the branch, whose last orbit this is; `None` where the period does not grow without bound
     /// as far as can be told.
     pub fn limit(&self, branch: &GeneralBranch<'_>, last: &Regular) -> Option<Limit> {
-        let [.., a, b, c] = self.0[..] else {
-            return None;
-        };
-        let last_orbits: [[f64; 2]; LAST] = [a, b, c];
-        let grows = last_orbits.windows(2).all(|pair| pair[1][1] > pair[0][1]);
-        let one_way = (b[0] - a[0]) * (c[0] - b[0]) > 0.0;
-        if !(grows && one_way) {
-            return None;
-        }
         let near = |limit: Uncertain| {
             let way = self.0.iter().map(|[at, _]| (at - limit.value).abs());
             limit.uncertainty <= NEAR * way.fold(0.0, f64::max)
         };
         let to_saddle = || {
             let rate = saddle_rate(branch, last)?;
-            if rate * (c[1] - a[1]) < SEEN {
-                return None;
-            }
-            extrapolated(last_orbits, |first, second| (rate * (second - first)).exp())
-                .filter(|limit| near(*limit))
+            let falls = |first: f64, second: f64| (rate * (second - first)).exp();
+            extrapolated(self.apart(falls)?, falls).filter(|limit| near(*limit))
         };
         if let Some(at) = to_saddle() {
             return Some(Limit {
@@ -72,12 +59,33 @@ impl Periods {
                 is_saddle_node: false,
             });
         }
-        let limit = extrapolated(last_orbits, |first, second| (second / first).powi(2))?;
+        let falls = |first: f64, second: f64| (second / first).powi(2);
+        let limit = extrapolated(self.apart(falls)?, falls)?;
         let fold = near(limit).then(|| fold_within(branch, limit)).flatten()?;
         Some(Limit {
             at: fold,
             is_saddle_node: true,
         })
+    }
+
+    /// The last orbit and others before it, between whose periods what is left of the way falls; `None` where there are none such on a
+    /// way that goes on and a period that grows.
+    fn apart(&self, falls: impl Fn(f64, f64) -> f64) -> Option<[[f64; 2]; LAST]> {
+        let mut last = self.0.len().checked_sub(1)?;
+        let c = self.0[last];
+        let mut before = |later: [f64; 2]| {
+            last = self.0[..last]
+                .iter()
+                .rposition(|orbit| falls(orbit[1], later[1]) > APART)?;
+            Some(self.0[last])
+        };
+        let b = before(c)?;
+        let a = before(b)?;
+        let way = &self.0[last..];
+        let goes_on = way
+            .windows(2)
+            .all(|pair| pair[1][1] > pair[0][1] && (pair[1][0] - pair[0][0]) * (c[0] - a[0]) > 0.0);
+        goes_on.then_some([a, b, c])
     }
 }
 

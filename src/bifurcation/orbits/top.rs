@@ -28,6 +28,8 @@ const POINTS: usize = 13;
 const WIDTHS: [f64; 2] = [0.04, 0.027];
 /// Tolerance of the points.
 const FINE: f64 = 1e-16;
+/// A stationary point within this part of the shorter arc is in its midst.
+const CENTRED: f64 = 0.5;
 
 /// The stationary point of the second coordinate along the curve of a test function, near a site on it.
 pub fn top(
@@ -40,12 +42,23 @@ pub fn top(
     let own = [Condition::TestFunction(test_function)];
     let here = corrector.look(near.clone(), &settings.free, &own).ok()?;
     let any = here.along[0].clone();
-    let direction = settings.direction(&here, &any)?;
+    let mut direction = settings.direction(&here, &any)?;
+    let mut near = near.clone();
+    // Where it is farther than the arcs that are looked at go, these begin there.
+    let rough = stationary(&mut corrector, &near, &direction, WIDTHS[0], test_function)?;
+    if rough.s.abs() > CENTRED * WIDTHS[1] {
+        let site = near.moved(&direction, rough.s);
+        let conditions = settings.and(Condition::Plane(&direction, &site));
+        let there = corrector.correct(site.clone(), &settings.free, &conditions, Goal::STEP);
+        near = there.ok()?.site;
+        let there = corrector.look(near.clone(), &settings.free, &own).ok()?;
+        direction = settings.direction(&there, &direction)?;
+    }
     let mut found = Vec::new();
     for width in WIDTHS {
         found.push(stationary(
             &mut corrector,
-            near,
+            &near,
             &direction,
             width,
             test_function,
