@@ -5,6 +5,7 @@
 
 use super::arc::Tracer;
 use super::shooting_nodes::ShootingNodes;
+use super::spread::extents;
 use crate::error::Result;
 use crate::field::Vector;
 use crate::integrate::{AnyField, AnyStep, Control};
@@ -124,7 +125,7 @@ impl ShootingNodes {
         normals: impl Fn(usize) -> Vector,
         uncertain: impl Fn(usize) -> bool,
     ) -> Result<Option<Self>> {
-        let (extents, period) = (self.sizes(), self.period().abs());
+        let (extents, period) = (extents(self.nodes.iter()), self.period().abs());
         let count = self.nodes.len();
         for k in (0..count).filter(|&k| uncertain(k)) {
             let next = (k + 1) % count;

@@ -9,6 +9,7 @@ use super::continuation_point::TangentVector;
 use super::cyclic::{self, Rows};
 use super::family::ParametrisedField;
 use super::shooting_nodes::ShootingNodes;
+use super::spread::extents;
 use crate::error::Result;
 use crate::field::{Matrix, Vector};
 use crate::integrate::AnyField;
@@ -167,7 +168,7 @@ impl Linear {
 
     /// How far such changes of the durations are at the ends of the arcs, in parts of how far each variable moves.
     pub fn ways(&self, shooting: &ShootingNodes, durations: &[f64]) -> Vec<f64> {
-        let extents = shooting.sizes();
+        let extents = extents(shooting.nodes.iter());
         let arcs = self.inflow.iter().zip(&*self.slowness).zip(durations);
         let way = |((inflow, slowness), change): ((&Vector, &f64), &f64)| {
             inflow.component_div(&extents).amax() * (change / slowness).abs()

@@ -60,7 +60,7 @@ pub type Palc<'c, 'f> = Continuation<OrbitCurve<'c, 'f>>;
 
 /// Lengths of the first and of the shortest steps; of orbits smaller than 1 the shortest is this part of their extent.
 const FIRST: f64 = 0.02;
-const SHORTEST: f64 = 1e-8;
+const SHORTEST: f64 = 1e-9;
 /// What a first correction may be.
 const OFF: f64 = 0.03;
 /// The least cosine between the directions before and after a step.

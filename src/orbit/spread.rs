@@ -30,7 +30,7 @@ impl Spread {
     };
     /// Along a curve of bifurcations, whose condition is a function of the maps.
     pub const CURVE: Spread = Spread {
-        way: 0.12,
+        way: 0.1,
         volume: (2.0, 2),
     };
 
@@ -68,16 +68,8 @@ struct Extents {
 
 impl Extents {
     fn of<'a>(points: impl Iterator<Item = &'a Vector> + Clone, period: f64) -> Self {
-        let count = points.clone().next().map_or(0, |x| x.len());
-        let extent = |i: usize| {
-            let values = points.clone().map(|x| x[i]);
-            let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
-                (a.min(x), b.max(x))
-            });
-            if most > least { most - least } else { 1.0 }
-        };
         Extents {
-            states: Vector::from_fn(count, |i, _| extent(i)),
+            states: extents(points),
             period,
         }
     }
@@ -211,6 +203,22 @@ impl ShootingNodes {
         let sharp = |x: &Vector| extents.radius(field, x) < SHARP * CORNER;
         worst > WORST * mean.max(1.0) || self.nodes.iter().any(sharp)
     }
+}
+
+/// How far each variable moves over these points; of one that hardly does, a part of its value.
+pub(super) fn extents<'a>(points: impl Iterator<Item = &'a Vector> + Clone) -> Vector {
+    /// The part of its value by which a variable moves that counts as moving.
+    const STILL: f64 = 1e-3;
+    let count = points.clone().next().map_or(0, |x| x.len());
+    let extent = |i: usize| {
+        let values = points.clone().map(|x| x[i]);
+        let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
+            (a.min(x), b.max(x))
+        });
+        let extent = f64::max(most - least, STILL * f64::max(most.abs(), least.abs()));
+        if extent > 0.0 { extent } else { 1.0 }
+    };
+    Vector::from_fn(count, |i, _| extent(i))
 }
 
 /// How fast a displacement of this point grows, if any does.

@@ -44,6 +44,13 @@ impl Periods {
     /// The limit of the coordinate at the end of the branch, whose last orbit this is; `None` where the period does not grow without bound
     /// as far as can be told.
     pub fn limit(&self, branch: &GeneralBranch<'_>, last: &Regular) -> Option<Limit> {
+        /// What the orbits of a branch are corrected to, in parts of the coordinate.
+        const CORRECTED: f64 = 1e-12;
+        let size = self
+            .0
+            .iter()
+            .fold(0.0, |most, [at, _]| f64::max(most, at.abs()));
+        let off = CORRECTED * size;
         let near = |limit: Uncertain| {
             let way = self.0.iter().map(|[at, _]| (at - limit.value).abs());
             limit.uncertainty <= NEAR * way.fold(0.0, f64::max)
@@ -51,7 +58,7 @@ impl Periods {
         let to_saddle = || {
             let rate = saddle_rate(branch, last)?;
             let falls = |first: f64, second: f64| (rate * (second - first)).exp();
-            extrapolated(self.apart(falls)?, falls).filter(|limit| near(*limit))
+            extrapolated(self.apart(falls)?, falls, off).filter(|limit| near(*limit))
         };
         if let Some(at) = to_saddle() {
             return Some(Limit {
@@ -60,7 +67,7 @@ impl Periods {
             });
         }
         let falls = |first: f64, second: f64| (second / first).powi(2);
-        let limit = extrapolated(self.apart(falls)?, falls)?;
+        let limit = extrapolated(self.apart(falls)?, falls, off)?;
         let fold = near(limit).then(|| fold_within(branch, limit)).flatten()?;
         Some(Limit {
             at: fold,
@@ -89,9 +96,13 @@ impl Periods {
     }
 }
 
-/// The limit of the coordinate where what is left of the way falls by this factor between two periods, by the last two of three orbits; as
-/// uncertain as it is far. `None` where the first two say otherwise.
-fn extrapolated(orbits: [[f64; 2]; LAST], falls: impl Fn(f64, f64) -> f64) -> Option<Uncertain> {
+/// The limit of the coordinate where what is left of the way falls by this factor between two periods, by the last two of three orbits, whose
+/// own coordinates are off by `corrected`; as uncertain as it is far. `None` where the first two say otherwise.
+fn extrapolated(
+    orbits: [[f64; 2]; LAST],
+    falls: impl Fn(f64, f64) -> f64,
+    corrected: f64,
+) -> Option<Uncertain> {
     let limit = |[first, second]: [[f64; 2]; 2]| {
         second[0] + (second[0] - first[0]) / (falls(first[1], second[1]) - 1.0)
     };
@@ -99,7 +110,7 @@ fn extrapolated(orbits: [[f64; 2]; LAST], falls: impl Fn(f64, f64) -> f64) -> Op
     let (before, now) = (limit([a, b]), limit([b, c]));
     let off = (now - before).abs();
     let agree = off <= AGREE * (before - b[0]).abs();
-    agree.then(|| Uncertain::new(now, (now - c[0]).abs().max(off)))
+    agree.then(|| Uncertain::new(now, (now - c[0]).abs().max(off) + corrected))
 }
 
 /// The least absolute value of the real parts of the eigenvalues of the saddle by which an orbit passes.
