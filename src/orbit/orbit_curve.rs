@@ -232,15 +232,7 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
         }
         let conditions = self.settings.and(Condition::Plane(direction, &predicted));
         // The gradients there, and not those of the orbit here: the direction depends on them.
-        let free = &self.settings.free;
-        let next = if by_planes {
-            self.corrector
-                .correct_beside(here, predicted.clone(), free, &conditions, Goal::STEP)
-        } else {
-            self.corrector
-                .correct(predicted.clone(), free, &conditions, Goal::STEP)
-        };
-        let next = next?;
+        let next = self.corrected(here, predicted.clone(), &conditions)?;
         let periods = [&here, &&next].map(|orbit| orbit.site.shooting.period());
         if (periods[1] / periods[0]).ln().abs() > LONGER.ln() {
             return Err(not_near("a step to an orbit of about the same period"));
@@ -338,13 +330,8 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
         watch: WatchedFunction,
     ) -> Option<(f64, DirectedPoint)> {
         let conditions = self.settings.and(watch.condition());
-        let (site, free) = (near.here.site.clone(), &self.settings.free);
-        let found = if self.settings.test_function.is_none() {
-            self.corrector
-                .correct_beside(&near.here, site, free, &conditions, Goal::STEP)
-        } else {
-            self.corrector.correct(site, free, &conditions, Goal::STEP)
-        };
+        let site = near.here.site.clone();
+        let found = self.corrected(&near.here, site, &conditions);
         let here = found.ok()?;
         let direction = self.settings.direction(&here, &near.direction);
         let direction = direction.unwrap_or_else(|| near.direction.clone());
@@ -368,6 +355,22 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
 }
 
 impl OrbitCurve<'_, '_> {
+    /// The orbit near a guess that meets the conditions: along a branch in the planes of an orbit nearby. Along a curve of bifurcations the
+    /// gradients of its condition belong to the planes at the nodes themselves.
+    fn corrected(
+        &mut self,
+        nearby: &Regular,
+        guess: ContinuationPoint,
+        conditions: &[Condition<'_>],
+    ) -> Result<Regular> {
+        let free = &self.settings.free;
+        let goal = Goal::STEP;
+        match self.settings.test_function {
+            None => (self.corrector).correct_beside(nearby, guess, free, conditions, goal),
+            Some(_) => self.corrector.correct(guess, free, conditions, goal),
+        }
+    }
+
     /// Whether the nodes had better be spread anew, or an arc grows by too much.
     fn is_uneven(&self, orbit: &Regular) -> bool {
         let linear = &orbit.linear;

@@ -70,12 +70,12 @@ impl Extents {
     fn of<'a>(points: impl Iterator<Item = &'a Vector> + Clone, period: f64) -> Self {
         Extents {
             states: extents(points),
-            period,
+            period: period.abs(),
         }
     }
 
     fn way(&self, from: &Vector, to: &Vector, length: f64) -> f64 {
-        (to - from).component_div(&self.states).amax() + length / self.period
+        (to - from).component_div(&self.states).amax() + length.abs() / self.period
     }
 
     /// The way on which the curve turns here: its radius of curvature, with time as one more coordinate.
