@@ -296,20 +296,23 @@ impl<'a> Corrector<'a> {
                 return None;
             }
             if done {
-                let (linear, along) = match planes {
-                    None => (linear, along),
+                let (linear, along, gradients) = match planes {
+                    None => (linear, along, known),
                     Some(_) => {
                         let field = self.family.field(site.at);
-                        let linear = linear.upright(self.family, &field, &site.shooting);
-                        let (_, along) = linear.solutions(free, self.family.scale(site.at))?;
-                        (linear, along)
+                        let upright = linear.upright(self.family, &field, &site.shooting);
+                        let (_, turned) = upright.solutions(free, self.family.scale(site.at))?;
+                        let before = linear.in_planes(&field, &site.shooting, &turned);
+                        let carried = |gradient| carried(gradient, (&along, &before), &turned);
+                        let gradients = known.iter().map(carried).collect::<Option<_>>()?;
+                        (upright, turned, gradients)
                     }
                 };
                 return Some(Regular {
                     spectrum: Spectrum::new(&linear),
                     site,
                     along,
-                    gradients: known,
+                    gradients,
                     iterations,
                     first,
                     residual: size,
@@ -479,6 +482,22 @@ fn test_function(condition: &Condition<'_>) -> Option<TestFunction> {
         Condition::TestFunction(test_function) => Some(*test_function),
         _ => None,
     }
+}
+
+/// A gradient in other planes: its product with each of the directions there, which `before` are the same in the planes of the gradient and of
+/// these directions `along`.
+fn carried(
+    gradient: &TangentVector,
+    (along, before): (&[TangentVector], &[TangentVector]),
+    turned: &[TangentVector],
+) -> Option<TangentVector> {
+    let slope = |direction: &TangentVector| -> f64 {
+        let parts = along.iter();
+        parts.map(|a| gradient.dot(a) * a.dot(direction)).sum()
+    };
+    let parts = turned.iter().zip(before);
+    let parts = parts.map(|(direction, before)| direction.clone().scaled(slope(before)));
+    parts.reduce(|sum, part| sum.plus(1.0, &part))
 }
 
 /// What is known of the test functions among the conditions.

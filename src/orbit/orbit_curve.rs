@@ -67,8 +67,6 @@ const OFF: f64 = 0.03;
 const TURN: f64 = 0.7;
 /// Progress of the last steps, as a part of the way.
 const PROGRESS: f64 = 2e-7;
-/// An arc of which a step would leave less than this vanishes.
-const SHRUNK: f64 = 0.08;
 /// By how much the time to the next plane is expected to change in a step, at most; and the period, which a second time around doubles.
 const STRETCH: f64 = 2.0;
 const LONGER: f64 = 1.8;
@@ -220,15 +218,9 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
         distance: f64,
     ) -> Result<(DirectedPoint, f64)> {
         let mut predicted = here.site.moved(direction, distance);
-        let by_planes = self.settings.test_function.is_none();
         let durations = here.site.shooting.durations.iter();
         for (now, then) in durations.zip(&mut predicted.shooting.durations) {
-            let stretch = *then / now;
-            if by_planes {
-                *then = now * stretch.clamp(1.0 / STRETCH, STRETCH);
-            } else if stretch < SHRUNK {
-                return Err(not_near("a step along which an arc of the orbit vanishes"));
-            }
+            *then = now * (*then / now).clamp(1.0 / STRETCH, STRETCH);
         }
         let conditions = self.settings.and(Condition::Plane(direction, &predicted));
         // The gradients there, and not those of the orbit here: the direction depends on them.
@@ -355,8 +347,7 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
 }
 
 impl OrbitCurve<'_, '_> {
-    /// The orbit near a guess that meets the conditions: along a branch in the planes of an orbit nearby. Along a curve of bifurcations the
-    /// gradients of its condition belong to the planes at the nodes themselves.
+    /// The orbit near a guess that meets the conditions.
     fn corrected(
         &mut self,
         nearby: &Regular,
@@ -364,11 +355,8 @@ impl OrbitCurve<'_, '_> {
         conditions: &[Condition<'_>],
     ) -> Result<Regular> {
         let free = &self.settings.free;
-        let goal = Goal::STEP;
-        match self.settings.test_function {
-            None => (self.corrector).correct_beside(nearby, guess, free, conditions, goal),
-            Some(_) => self.corrector.correct(guess, free, conditions, goal),
-        }
+        self.corrector
+            .correct_beside(nearby, guess, free, conditions, Goal::STEP)
     }
 
     /// Whether the nodes had better be spread anew, or an arc grows by too much.

@@ -44,27 +44,18 @@ pub fn top(
     let any = here.along[0].clone();
     let mut direction = settings.direction(&here, &any)?;
     let mut near = near.clone();
-    // Where it is farther than the arcs that are looked at go, these begin there.
-    let rough = stationary(&mut corrector, &near, &direction, WIDTHS[0], test_function)?;
-    if rough.s.abs() > CENTRED * WIDTHS[1] {
-        let site = near.moved(&direction, rough.s);
+    let mut first = stationary(&mut corrector, &near, &direction, WIDTHS[0], test_function)?;
+    // Where it is farther than the shorter arc goes, both begin there.
+    if first.s.abs() > CENTRED * WIDTHS[1] {
+        let site = near.moved(&direction, first.s);
         let conditions = settings.and(Condition::Plane(&direction, &site));
         let there = corrector.correct(site.clone(), &settings.free, &conditions, Goal::STEP);
         near = there.ok()?.site;
         let there = corrector.look(near.clone(), &settings.free, &own).ok()?;
         direction = settings.direction(&there, &direction)?;
+        first = stationary(&mut corrector, &near, &direction, WIDTHS[0], test_function)?;
     }
-    let mut found = Vec::new();
-    for width in WIDTHS {
-        found.push(stationary(
-            &mut corrector,
-            &near,
-            &direction,
-            width,
-            test_function,
-        )?);
-    }
-    let [first, second] = [&found[0], &found[1]];
+    let second = stationary(&mut corrector, &near, &direction, WIDTHS[1], test_function)?;
     let at = near.moved(&direction, second.s);
     let conditions = settings.and(Condition::Plane(&direction, &at));
     let orbit = corrector
