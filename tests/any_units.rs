@@ -263,8 +263,32 @@ fn in_units(formula: &str, units: &[(String, f64)]) -> String {
     made
 }
 
-/// A model with its states and its time in units that are drawn from twelve decades; the unit of time.
-fn drawn(name: &str, random: &mut ChaCha8Rng) -> (String, f64) {
+/// A system, with the units of its states and of its time in those of another.
+struct Scaled {
+    file: String,
+    states: Vec<(String, f64)>,
+    time: f64,
+}
+
+/// A model as it is.
+fn own(name: &str) -> Scaled {
+    Scaled {
+        file: format!("tests/data/models/{name}.toml"),
+        states: Vec::new(),
+        time: 1.0,
+    }
+}
+
+impl Scaled {
+    /// The unit of a state.
+    fn of(&self, state: &str) -> f64 {
+        let known = self.states.iter().find(|(name, _)| name == state);
+        known.map_or(1.0, |(_, unit)| *unit)
+    }
+}
+
+/// A model with its states and its time in units that are drawn from twelve decades.
+fn drawn(test: &str, name: &str, random: &mut ChaCha8Rng) -> Scaled {
     let text = fs::read_to_string(format!("tests/data/models/{name}.toml")).expect("a model");
     let model: toml::Table = text.parse().expect("TOML");
     let model = serde_json::to_value(model).expect("JSON");
@@ -292,9 +316,13 @@ fn drawn(name: &str, random: &mut ChaCha8Rng) -> (String, f64) {
             made += &format!("{name} = {scaled}\n");
         }
     }
-    let file = folder(&format!("any_units_{name}")).join("system.toml");
+    let file = folder(&format!("any_units_{test}_{name}")).join("system.toml");
     fs::write(&file, made).expect("a file");
-    (file.display().to_string(), time)
+    Scaled {
+        file: file.display().to_string(),
+        states: units,
+        time,
+    }
 }
 
 /// Models of mechanics, neuroscience, biochemistry, ecology and circuits.
@@ -335,8 +363,10 @@ fn models_are_the_same_in_any_units() {
     ];
     let mut random = ChaCha8Rng::seed_from_u64(50);
     for (name, parameter, value, oscillates) in ALL {
-        let (scaled, time) = drawn(name, &mut random);
-        let own = format!("tests/data/models/{name}.toml");
+        let Scaled {
+            file: scaled, time, ..
+        } = drawn("branch", name, &mut random);
+        let own = own(name).file;
         let along = format!(
             "--along {parameter} --from {} --to {}",
             0.7 * value,
@@ -383,6 +413,117 @@ fn models_are_the_same_in_any_units() {
             });
             assert!((a.0 - b.0).abs() <= a.1 + b.1, "{name}: {a:?} {b:?}");
             assert_eq!(a.2, b.2, "{name}");
+        }
+    }
+}
+
+/// At the default tolerances: each state at the end, within the bounds of both, and these are alike.
+#[test]
+fn runs_are_the_same_in_any_units() {
+    const ALL: [(&str, f64); 20] = [
+        ("chemostat-ciliate", 60.0),
+        ("circadian-per", 60.0),
+        ("connor-stevens", 30.0),
+        ("cstr", 6.0),
+        ("goldbeter-lefever", 40.0),
+        ("goldbeter-mitotic", 1000.0),
+        ("goodwin", 40.0),
+        ("holling-tanner", 60.0),
+        ("hindmarsh-rose", 80.0),
+        ("jansen-rit", 0.4),
+        ("lengyel-epstein", 20.0),
+        ("li-rinzel", 30.0),
+        ("mckean", 40.0),
+        ("morris-lecar-si", 0.3),
+        ("robertson", 40.0),
+        ("rosenzweig-macarthur", 100.0),
+        ("selkov", 60.0),
+        ("stribeck-belt", 30.0),
+        ("tunnel-diode", 1e-8),
+        ("wilson-cowan", 0.1),
+    ];
+    let mut random = ChaCha8Rng::seed_from_u64(51);
+    for (name, until) in ALL {
+        let [a, b] = [own(name), drawn("run", name, &mut random)].map(|system| {
+            let made = made(&format!(
+                "integrate --system {} --until {:e} --final-only --estimate-error",
+                system.file,
+                until / system.time
+            ));
+            let states = made["model"]["states"].as_array().expect("states").clone();
+            let last = &made["result"]["final"];
+            let of = |state: &Value| {
+                let state = state.as_str().expect("a name");
+                let [x, off] = [state.to_owned(), format!("{state}_uncertainty")]
+                    .map(|key| system.of(state) * number(last, &format!("/{key}")));
+                (x, off)
+            };
+            states.iter().map(of).collect::<Vec<_>>()
+        });
+        for ((x, off), (y, other)) in a.iter().zip(&b) {
+            assert!((x - y).abs() <= off + other, "{name}: {a:?} {b:?}");
+            let size = x.abs().max(y.abs());
+            assert!(*other < 100.0 * off.max(1e-9 * size), "{name}: {a:?} {b:?}");
+        }
+    }
+}
+
+/// What returns say, the periods and exponents, and what maps of regimes say.
+#[test]
+fn sections_and_sweeps_are_the_same_in_any_units() {
+    const ALL: [(&str, &str, f64, &str, f64); 8] = [
+        ("selkov", "x", 0.6, "a", 0.08),
+        ("goodwin", "x", 0.3, "n", 12.5),
+        ("holling-tanner", "x", 0.3, "a", 1.0),
+        ("goldbeter-mitotic", "M", 0.3, "mi", 60.0),
+        ("jansen-rit", "ya", 0.11, "A", 3.25),
+        ("lengyel-epstein", "x", 2.0, "a", 10.0),
+        ("wilson-cowan", "E", 0.2, "tau", 0.008),
+        ("rosenzweig-macarthur", "N", 50.0, "r", 0.5),
+    ];
+    let mut random = ChaCha8Rng::seed_from_u64(52);
+    for (name, state, value, parameter, at) in ALL {
+        let systems = [own(name), drawn("section", name, &mut random)];
+        let [a, b] = systems.each_ref().map(|system| {
+            let made = made(&format!(
+                "section --system {} --surface {state}={:e} --skip 60 --returns 60 --lyapunov",
+                system.file,
+                value / system.of(state)
+            ));
+            let result = &made["result"];
+            let period = [0, 1].map(|i| {
+                let part = ["value", "uncertainty"][i];
+                system.time * result["period"][part].as_f64().unwrap_or(0.0)
+            });
+            let exponent = result["lyapunov"][1]["value"].as_f64().unwrap_or(0.0) / system.time;
+            (result["regime"].clone(), period, exponent)
+        });
+        assert_eq!(a.0, b.0, "{name}: {a:?} {b:?}");
+        assert_eq!(a.0, "periodic", "{name}");
+        let off = (a.1[0] - b.1[0]).abs();
+        assert!(off <= a.1[1] + b.1[1], "{name}: {a:?} {b:?}");
+        assert!((a.2 / b.2 - 1.0).abs() < 1e-6, "{name}: {a:?} {b:?}");
+        let [a, b] = systems.each_ref().map(|system| {
+            let made = made(&format!(
+                "sweep --system {} --grid {parameter}={}:{}:3",
+                system.file,
+                0.8 * at,
+                1.2 * at
+            ));
+            let rows = made["result"]["rows"].as_array().expect("rows").clone();
+            let of = |row: &Value| {
+                let period = system.time * row["period"].as_f64().unwrap_or(0.0);
+                (
+                    row["regime"].clone(),
+                    row["returns_per_period"].clone(),
+                    period,
+                )
+            };
+            rows.iter().map(of).collect::<Vec<_>>()
+        });
+        for (x, y) in a.iter().zip(&b) {
+            assert_eq!((&x.0, &x.1), (&y.0, &y.1), "{name}: {a:?} {b:?}");
+            assert!((x.2 - y.2).abs() <= 1e-7 * x.2, "{name}: {a:?} {b:?}");
         }
     }
 }

@@ -11,6 +11,7 @@ mod auto;
 mod choice;
 #[cfg(feature = "sundials")]
 mod cvode;
+mod motion_units;
 pub(crate) mod rosenbrock;
 pub(crate) mod singularity;
 mod static_field;
@@ -25,6 +26,7 @@ pub use auto::Auto;
 pub use choice::{Choice, HasSeries};
 #[cfg(feature = "sundials")]
 pub use cvode::CvodeIntegrator;
+pub use motion_units::MotionUnits;
 pub use rosenbrock::{Rosenbrock, RosenbrockMethod};
 #[doc(hidden)]
 pub use tableau::Tableau;

@@ -61,8 +61,9 @@ pub type Palc<'c, 'f> = Continuation<OrbitCurve<'c, 'f>>;
 /// Lengths of the first and of the shortest steps; of orbits smaller than 1 the shortest is this part of their extent.
 const FIRST: f64 = 0.02;
 const SHORTEST: f64 = 1e-9;
-/// What a first correction may be.
+/// What a first correction is to be, and may be.
 const OFF: f64 = 0.03;
+const FAR_OFF: f64 = 0.15;
 /// The least cosine between the directions before and after a step.
 const TURN: f64 = 0.7;
 /// Progress of the last steps, as a part of the way.
@@ -70,6 +71,10 @@ const PROGRESS: f64 = 2e-7;
 /// By how much the time to the next plane is expected to change in a step, at most; and the period, which a second time around doubles.
 const STRETCH: f64 = 2.0;
 const LONGER: f64 = 1.8;
+/// By how much the way of a variable may grow or shrink in a step.
+const LARGER: f64 = 2.5;
+/// What a relative error of the predicted period counts beside a correction.
+const LATE: f64 = 2.0;
 /// A slope along a parameter that is small enough where it has no condition of its own.
 const FLAT: f64 = 1e-3;
 
@@ -225,15 +230,23 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
         let conditions = self.settings.and(Condition::Plane(direction, &predicted));
         // The gradients there, and not those of the orbit here: the direction depends on them.
         let next = self.corrected(here, predicted.clone(), &conditions)?;
-        let periods = [&here, &&next].map(|orbit| orbit.site.shooting.period());
-        if (periods[1] / periods[0]).ln().abs() > LONGER.ln() {
+        let [period, to] = [&here, &&next].map(|orbit| orbit.site.shooting.period());
+        if (to / period).ln().abs() > LONGER.ln() {
             return Err(not_near("a step to an orbit of about the same period"));
+        }
+        if !here.site.shooting.is_like(&next.site.shooting, LARGER) {
+            return Err(not_near("a step to an orbit of about the same shape"));
+        }
+        // Another sheet of a branch that winds may be near by everything but its period.
+        let late = (predicted.shooting.period() / to - 1.0).abs();
+        let first = next.first.max(LATE * late);
+        if first > FAR_OFF {
+            return Err(not_near("a step whose end is near the predicted one"));
         }
         let direction = self
             .settings
             .direction(&next, direction)
             .ok_or_else(no_direction)?;
-        let first = next.first;
         let here = next;
         Ok((DirectedPoint { here, direction }, first))
     }

@@ -5,7 +5,7 @@
 
 use super::arc::Tracer;
 use super::shooting_nodes::ShootingNodes;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::field::Vector;
 use crate::integrate::{AnyField, AnyStep, Control};
 use crate::number::eigenvalues;
@@ -116,7 +116,13 @@ impl ShootingNodes {
                 Some(*sum)
             })
             .collect();
-        let all = ends.last().copied().unwrap_or(0.0);
+        let all = ends.last().copied().unwrap_or(f64::NAN);
+        if !all.is_finite() {
+            return Err(Error::NonFinite {
+                what: "the length of the orbit",
+                t: period,
+            });
+        }
         let count = (all.ceil() as usize).clamp(NODES.0, NODES.1);
         let each = all / count as f64;
         let mut begins = std::iter::once(0.0).chain(ends).zip(&steps).peekable();
@@ -145,6 +151,29 @@ impl ShootingNodes {
         let ends = times.iter().copied().skip(1).chain(again);
         let durations = times.iter().zip(ends).map(|(from, to)| to - from).collect();
         Ok(ShootingNodes { nodes, durations })
+    }
+
+    /// Whether the other orbit, with as many nodes, has about the same shape: no variable moves farther or less far by this factor, and the nodes
+    /// are on the same sides of their mean. An orbit that has shrunk to an equilibrium and grown again behind it is on the other side.
+    pub(super) fn is_like(&self, other: &Self, factor: f64) -> bool {
+        let [own, others] = [self, other].map(|one| extents(one.nodes.iter()));
+        let alike = |(a, b): (&f64, &f64)| (a / b).ln().abs() <= factor.ln();
+        if !own.iter().zip(&others).all(alike) {
+            return false;
+        }
+        let [mean, middle] = [self, other].map(|one| {
+            let sum = one
+                .nodes
+                .iter()
+                .fold(Vector::zeros(own.len()), |sum, x| sum + x);
+            sum / one.nodes.len() as f64
+        });
+        let nodes = self.nodes.iter().zip(&other.nodes);
+        let product = |(a, b): (&Vector, &Vector)| {
+            let [a, b] = [a - &mean, b - &middle].map(|x| x.component_div(&own));
+            a.dot(&b)
+        };
+        nodes.map(product).sum::<f64>() > 0.0
     }
 
     /// All steps once around, none across a node.

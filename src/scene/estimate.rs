@@ -65,6 +65,14 @@ impl Companion {
         }
     }
 
+    /// The same in this unit of time.
+    pub(super) fn in_time(mut self, unit: f64) -> Self {
+        let (Companion::Tighter(Tolerances { max_step, .. }) | Companion::Reference { max_step }) =
+            &mut self;
+        *max_step /= unit;
+        self
+    }
+
     /// The method of the second run in a dimension known when the program runs.
     pub(super) fn any_integrator(self, max_steps: usize) -> Result<AnyIntegrator> {
         match self {

@@ -30,7 +30,7 @@ pub(super) fn closing(returns: &[Return], unit: f64) -> Option<usize> {
             |range: std::ops::Range<usize>| range.map(|i| moved(i, q)).fold(0.0, f64::max);
         let late = largest(n - window..n);
         let early = largest(n - 2 * window..n - window);
-        if late > NEAR || late > SHRUNK * early {
+        if late > NEAR || late >= SHRUNK * early {
             // Arrived, where the error of the run moves it about.
             return late < ARRIVED;
         }

@@ -87,7 +87,7 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
     pub fn go(mut self, palc: &mut Palc<'_, '_>, teller: &mut Teller<'_>) -> Result<()> {
         let watches = self.watches();
         let end = palc.follow(&watches, STEPS, &mut |palc, before, met| match met {
-            Met::Zero(watch, at) => self.zero(palc, watch, at, teller),
+            Met::Zero(watch, at) => self.zero((palc, before), watch, at, teller),
             Met::Point(now) => self.orbit(palc, now, before, teller),
         })?;
         if end != Stop::Observer && self.inside {
@@ -222,13 +222,11 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
     /// Something that is watched is zero here.
     fn zero(
         &mut self,
-        palc: &Palc<'_, '_>,
+        (palc, before): (&Palc<'_, '_>, &DirectedPoint),
         watch: WatchedFunction,
         at: &DirectedPoint,
         teller: &mut Teller<'_>,
     ) -> ControlFlow<()> {
-        /// A slope of the parameter along the branch that is zero: at folds, where the multiplier 1 is no pitchfork's.
-        const FLAT: f64 = 1e-3;
         let branch = self.set.branch;
         let (from, to) = branch.range;
         let near = &at.here;
@@ -261,8 +259,10 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
                 return Continue(());
             }
             WatchedFunction::TestFunction(TestFunction::Fold) => {
-                let turns = at.direction.parameters[FREE].abs() < FLAT;
-                if turns { Label::Sn } else { Label::Pf }
+                match turns(before, at, &palc.now) {
+                    true => Label::Sn,
+                    false => Label::Pf,
+                }
             }
             _ => return Continue(()),
         };
@@ -295,4 +295,17 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         teller.special(point)?;
         if ends { Break(()) } else { Continue(()) }
     }
+}
+
+/// Whether the parameter turns at an orbit with a multiplier 1, on a step from one point to another: at a fold, where at a pitchfork it goes on.
+fn turns(from: &DirectedPoint, at: &DirectedPoint, to: &DirectedPoint) -> bool {
+    /// Slopes of the parameter along the branch that are rounding: along a canard it turns within that.
+    const ROUNDING: f64 = 1e-8;
+    /// The slope at a fold, in parts of those at the ends of the step, where it changes its sign on the step, and where it is seen to turn twice.
+    const ONCE: f64 = 0.3;
+    const TWICE: f64 = 1e-3;
+    let [from, at, to] = [from, at, to].map(|one| one.direction.parameters[FREE]);
+    let most = from.abs().max(to.abs());
+    let part = if from * to < 0.0 { ONCE } else { TWICE };
+    most < ROUNDING || at.abs() < part * most
 }

@@ -6,7 +6,7 @@ use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
 use crate::field::Vector;
 use crate::friction::positive;
-use crate::integrate::{AnyField, Choice, Tolerances};
+use crate::integrate::{AnyField, Choice, MotionUnits, Tolerances};
 use crate::model::TextSystem;
 use crate::orbit::{
     AlongArcs, ContinuationPoint, Coordinate, FoundOrbit, OrbitAccuracy, OverText,
@@ -14,9 +14,7 @@ use crate::orbit::{
 };
 use crate::scene::following;
 use crate::scene::system::Described;
-use crate::scene::text::{
-    MotionUnits, SearchPlace, TextEquilibriaPlan, TextModel, TextSlab, orbit_start,
-};
+use crate::scene::text::{SearchPlace, TextEquilibriaPlan, TextModel, TextSlab, orbit_start};
 use crate::scene::units::{Quantity, Units};
 use serde_json::{Map, Value};
 use std::borrow::Cow;

@@ -6,7 +6,7 @@ use super::SectionPlan;
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::field::Vector;
-use crate::integrate::{AnyField, Choice, Control};
+use crate::integrate::{AnyField, Choice, Control, MotionUnits};
 use crate::number::Uncertain;
 use crate::orbit::{
     FoundOrbit, InitialGuess, InterfaceSystem, Kind, Orbit, OrbitAccuracy, Query, find,
@@ -33,6 +33,20 @@ pub struct CheckedExponents {
     pub along_flow: Option<f64>,
     /// The sum of the exponents less the mean of the trace, of which that sum knows nothing; `None` at rest.
     pub liouville_defect: Option<f64>,
+}
+
+impl CheckedExponents {
+    /// The same in a system's own unit of time.
+    pub(super) fn outward(self, units: &MotionUnits) -> Self {
+        let rate = |x: Uncertain| units.outward_rate(x);
+        CheckedExponents {
+            exponents: self.exponents.into_iter().map(rate).collect(),
+            across_flow: self.across_flow.map(rate),
+            converged: self.converged,
+            along_flow: self.along_flow.map(|x| x / units.time),
+            liouville_defect: self.liouville_defect.map(|x| x / units.time),
+        }
+    }
 }
 
 /// Told how far it has come; it may stop it.

@@ -7,7 +7,7 @@ use super::exponents::{CheckedExponents, ProgressObserver, embedded, of_orbit, o
 use super::row::RowMaker;
 use crate::error::{Error, Result};
 use crate::field::Vector;
-use crate::integrate::{AnyField, AnyIntegrator, Control, Work};
+use crate::integrate::{AnyField, AnyIntegrator, Control, MotionUnits, Work};
 use crate::model;
 use crate::number::Uncertain;
 use crate::section::{
@@ -46,6 +46,18 @@ pub struct SectionOutcome {
     pub failure: Option<Error>,
     /// Whether the sink stopped it.
     pub stopped: bool,
+}
+
+impl SectionOutcome {
+    /// The same in a system's own units of time and of the state of the section.
+    pub(in crate::scene) fn outward(self, units: &MotionUnits, state: usize) -> Self {
+        SectionOutcome {
+            period: self.period.map(|period| units.outward_time(period)),
+            lyapunov: self.lyapunov.map(|found| found.outward(units)),
+            failure: self.failure.map(|error| units.outward_error(error, state)),
+            ..self
+        }
+    }
 }
 
 /// The exponents by means along a record.

@@ -131,11 +131,13 @@ impl<P: SystemPoints> SystemPoints for BasinPoints<P> {
         let states = &self.states;
         for (i, &value) in values.iter().enumerate() {
             let value = states.units.inward(states.quantities[i], value);
-            point.start[states.places[i]] = match states.quantities[i] {
+            let place = states.places[i];
+            let value = match states.quantities[i] {
                 // Interfaces have the logarithm among their variables.
                 Quantity::State => value.ln(),
                 _ => value,
             };
+            point.start[place] = value / point.units.sizes[place];
         }
         Ok(point)
     }

@@ -7,7 +7,7 @@ use super::axes::Axes;
 use crate::error::Result;
 use crate::field::Vector;
 use crate::friction::{AnyLaw, Formulas, Law, beside};
-use crate::integrate::AnyField;
+use crate::integrate::{AnyField, MotionUnits};
 use crate::model::{self, Loading};
 use crate::number::polynomial::Crossing;
 use crate::scene::plan::NEAR_SYMMETRIC;
@@ -130,6 +130,7 @@ impl SystemPoints for InterfacePoints {
         let patience = PATIENCE * usual_patience(loading.driving, loading.stiffness);
         let surface = Surface::stress(begin.len(), stress, Crossing::Downwards);
         Ok(SystemPoint {
+            units: MotionUnits::given(begin.len()),
             field,
             start: Vector::from_vec(begin),
             section: SectionPlace::Known(surface, patience),

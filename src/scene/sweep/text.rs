@@ -6,7 +6,7 @@ use super::options::SweepOptions;
 use crate::error::{Error, Result};
 use crate::field::Vector;
 use crate::friction::positive;
-use crate::integrate::AnyField;
+use crate::integrate::{AnyField, MotionUnits};
 use crate::number::polynomial::Crossing;
 use crate::scene::options::ModelOptions;
 use crate::scene::text::TextModel;
@@ -173,15 +173,17 @@ impl SystemPoints for TextPoints {
         for (name, &value) in self.names.iter().zip(values) {
             system.set(name, value)?;
         }
+        let mut units = MotionUnits::given(system.states().len());
         let (begin, section, equal_parts) = match (&self.begins, &self.model.slab) {
             (Some((first, section)), _) => {
-                let mut begin = first.clone();
+                units = MotionUnits::measured(&system, first)?;
+                let mut begin = units.inward(first);
                 if start > 0 {
                     for x in begin.iter_mut() {
                         *x += random.between((-1.0, 1.0)) * (1.0 + x.abs());
                     }
                 }
-                (begin, section.clone(), false)
+                (begin, section.clone().inward(&units), false)
             }
             (None, Some(slab)) => {
                 let stress = slab.mean_stress(&system)?;
@@ -202,7 +204,9 @@ impl SystemPoints for TextPoints {
             }
             (None, None) => unreachable!("a system has a start"),
         };
+        let system = units.inward_system(&system)?;
         Ok(SystemPoint {
+            units,
             enclosed: Some(Enclosure(Box::new(system.clone()))),
             field: AnyField::of_text(Cow::Owned(system))?,
             start: begin,

@@ -4,6 +4,7 @@ use super::model::{TextModel, number};
 use crate::equilibrium::{Enclosed, Stability, spectrum_within, zero_near, zeros_in_box};
 use crate::error::{Error, Result};
 use crate::field::Vector;
+use crate::integrate::MotionUnits;
 use crate::model::TextSystem;
 use crate::number::{Interval, Uncertain};
 use crate::scene::options::EquilibriaOptions;
@@ -141,21 +142,23 @@ impl TextEquilibriaPlan {
 
     fn newton(&self, start: &Vector) -> Result<Vector> {
         const ITERATIONS: usize = 200;
-        /// Relative to 1 + |x|, a step that is the last; or where steps no longer shrink.
+        /// Relative to |x| and to how far a state moves, a step that is the last; or where steps no longer shrink.
         const DONE: f64 = 1e-15;
         const NOISE: f64 = 1e-9;
         let field = self.model.field()?;
+        let units = match self.model.slab {
+            Some(_) => MotionUnits::given(start.len()),
+            None => MotionUnits::at_start(&self.model.system, start)?,
+        };
         let (mut at, mut last) = (start.clone(), f64::INFINITY);
         for _ in 0..ITERATIONS {
             let Some(step) = field.newton_step(at.as_slice()) else {
                 break;
             };
             at -= &step;
-            let sizes = step
-                .iter()
-                .zip(&at)
-                .map(|(dx, x)| dx.abs() / (1.0 + x.abs()));
-            let size = sizes.fold(0.0, f64::max);
+            let parts = step.iter().zip(&at).zip(&units.sizes);
+            let parts = parts.map(|((dx, x), size)| dx.abs() / (size + x.abs()));
+            let size = parts.fold(0.0, f64::max);
             if size < DONE || (size < NOISE && size >= 0.5 * last) {
                 return Ok(at);
             }

@@ -26,7 +26,6 @@ pub use law::{TextLawPlan, TextLawPoint};
 pub use law_file::LawFile;
 pub use model::TextModel;
 pub(super) use model::given_text;
-pub use motion::MotionUnits;
 pub use options::TextOptions;
 pub use orbit::TextOrbitPlan;
 pub(super) use orbit::orbit_start;

@@ -3,7 +3,7 @@
 use super::plan::{TextInstant, TextPlan};
 use crate::error::Result;
 use crate::field::Vector;
-use crate::integrate::{AnyStep, Control, Work};
+use crate::integrate::{AnyStep, Control, MotionUnits, Work};
 use crate::model::TextSystem;
 use crate::number::DoubleDouble;
 use crate::scene::column::Column;
@@ -20,6 +20,8 @@ pub(super) struct TextObserver<'a> {
     pictured: Vec<Column<TextInstant>>,
     /// How V_H is here.
     stretch: Stretch,
+    /// The units of the steps.
+    units: MotionUnits,
     here: TextInstant,
     /// The slips there, in all digits.
     slips: Vec<DoubleDouble>,
@@ -43,6 +45,7 @@ impl<'a> TextObserver<'a> {
             sink,
             pictured: plan.pictured(),
             stretch: Stretch::new((0.0, 0.0), (driving, driving)),
+            units: plan.units.clone(),
             here: TextInstant {
                 time: 0.0,
                 state: plan.start.as_slice().to_vec(),
@@ -61,6 +64,11 @@ impl<'a> TextObserver<'a> {
     /// Whether the sink stopped the run.
     pub fn stopped(&self) -> bool {
         self.stopped
+    }
+
+    /// The next steps are in these units.
+    pub fn in_units(&mut self, units: &MotionUnits) {
+        self.units.clone_from(units);
     }
 
     /// A stretch begins: the first one with the first row, the others with one at either side of a change.
@@ -103,40 +111,40 @@ impl<'a> TextObserver<'a> {
             }
         };
         let count = plan.start.len();
+        let units = std::mem::replace(&mut self.units, MotionUnits::given(0));
+        // Units of time are powers of two: times come and go without rounding.
+        let (begin, end) = (step.t0 * units.time, step.t1 * units.time);
         let instant = |t: f64, slips: &[DoubleDouble]| {
-            let mut state = if t == step.t1 {
-                step.y1.to_vec()
-            } else {
-                step.dense(t).as_slice().to_vec()
+            let state = match t == end {
+                true => Vector::from_column_slice(step.y1),
+                false => step.dense(t / units.time),
             };
-            state.truncate(count);
+            let state = state.iter().zip(&units.sizes).map(|(x, size)| x * size);
             TextInstant {
                 time: t,
-                state,
+                state: state.take(count).collect(),
                 slip: leading(slips),
                 driving: stretch.driving_at(t),
             }
         };
-        while let Some(t) = self.next_sample().filter(|&t| t <= step.t1) {
+        while let Some(t) = self.next_sample().filter(|&t| t <= end) {
             self.emit(&instant(t, &slip(t)));
             self.sampled += 1;
         }
         if plan.picture {
             for part in 1..=PICTURED {
-                let t = step.t0 + (step.t1 - step.t0) * part as f64 / PICTURED as f64;
+                let t = begin + (end - begin) * part as f64 / PICTURED as f64;
                 self.draw(&instant(t, &before));
             }
         }
-        self.slips = slip(step.t1);
-        self.here.time = step.t1;
-        self.here.state.copy_from_slice(&step.y1[..count]);
-        self.here.slip = leading(&self.slips);
-        self.here.driving = stretch.driving_at(step.t1);
+        self.slips = slip(end);
+        self.here = instant(end, &self.slips);
+        self.units = units;
         if plan.sampling == Sampling::EveryStep {
             let here = self.here.clone();
             self.emit(&here);
         }
-        if self.sink.reached(step.t1 / plan.until) == Control::Stop {
+        if self.sink.reached(end / plan.until) == Control::Stop {
             self.stopped = true;
         }
         let only_end = plan.sampling == Sampling::FinalOnly && !plan.picture && !needs_slip;

@@ -1,7 +1,6 @@
 //! A periodic orbit of a system of one's own.
 
 use super::model::TextModel;
-use super::motion::MotionUnits;
 use super::plan::{TextPlan, text_columns};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
@@ -9,7 +8,7 @@ use crate::field::Vector;
 use crate::friction::positive;
 #[cfg(not(feature = "sundials"))]
 use crate::integrate::RosenbrockMethod;
-use crate::integrate::{AnyField, Choice, Tolerances};
+use crate::integrate::{AnyField, Choice, MotionUnits, Tolerances};
 use crate::orbit::{
     AlongArcs, Crosscheck, FoundOrbit, Orbit, OrbitAccuracy, ShootingNodes, crosscheck_of,
     find_from,
@@ -116,7 +115,7 @@ impl TextOrbitPlan {
             self.period.map(|period| period / units.time),
             &units.inward_accuracy(self.accuracy, self.atol_is_given),
         )
-        .map_err(|error| units.outward_error(error))?;
+        .map_err(|error| units.outward_error(error, 0))?;
         let others = found.others.into_iter();
         let mut found = FoundOrbit {
             orbit: units.outward_orbit(found.orbit),
@@ -132,8 +131,7 @@ impl TextOrbitPlan {
     /// interfaces.
     pub fn absolute_tolerances(&self, accuracy: &OrbitAccuracy) -> Option<Vec<f64>> {
         let own = !self.atol_is_given && self.model.slab.is_none();
-        let sizes = self.units.sizes.iter();
-        own.then(|| sizes.map(|size| size * accuracy.tolerances.atol).collect())
+        own.then(|| self.units.outward_atol(accuracy.tolerances.atol))
     }
 
     /// The field in the units in which the orbit is looked for.
@@ -201,6 +199,8 @@ impl TextOrbitPlan {
             asked_method: method.name().into(),
             method,
             tolerances,
+            atol_is_given: self.atol_is_given,
+            units: self.units.clone(),
             max_steps: self.accuracy.max_steps,
             model: self.model.clone(),
         })
@@ -221,7 +221,7 @@ impl TextOrbitPlan {
         let units = &self.units;
         let inward = units.inward_accuracy(second, self.atol_is_given);
         let again = crosscheck_of(&self.field()?, &units.inward_orbit(orbit), &inward)
-            .map_err(|error| units.outward_error(error))?;
+            .map_err(|error| units.outward_error(error, 0))?;
         let mut again = units.outward_crosscheck(again);
         self.complete(&mut again.orbit, &second)?;
         Ok(Some(again))

@@ -4,7 +4,7 @@ use super::model::TextModel;
 use super::slab::TextSlab;
 use crate::error::{Error, Result};
 use crate::field::Vector;
-use crate::integrate::{Choice, Tolerances};
+use crate::integrate::{Choice, MotionUnits, Tolerances};
 use crate::model::TextSystem;
 use crate::scene::column::Column;
 use crate::scene::estimate::Companion;
@@ -44,6 +44,10 @@ pub struct TextPlan {
     pub method: Choice,
     /// The tolerances.
     pub tolerances: Tolerances,
+    /// Whether the absolute one is the user's, in the system's own units.
+    pub atol_is_given: bool,
+    /// The units in which the run begins, which grow with it.
+    pub units: MotionUnits,
     /// The bound on steps.
     pub max_steps: usize,
 }
@@ -138,6 +142,11 @@ impl TextPlan {
             columns = Column::listed(&columns, names)?;
         }
         let (method, tolerances) = numerics(&options.numerics, model.units())?;
+        let atol_is_given = options.numerics.atol.is_some();
+        let units = match atol_is_given || model.slab.is_some() {
+            true => MotionUnits::given(start.len()),
+            false => MotionUnits::at_start(&model.system, &start)?,
+        };
         Ok(TextPlan {
             program,
             start,
@@ -151,9 +160,18 @@ impl TextPlan {
             asked_method: options.numerics.method.clone(),
             method,
             tolerances,
+            atol_is_given,
+            units,
             max_steps: options.numerics.max_steps,
             model,
         })
+    }
+
+    /// What each state may err by in a step beside its relative error, as the run begins; `None` where one number is given for all, or for
+    /// interfaces.
+    pub fn absolute_tolerances(&self) -> Option<Vec<f64>> {
+        let own = !self.atol_is_given && self.model.slab.is_none();
+        own.then(|| self.units.outward_atol(self.tolerances.atol))
     }
 
     /// The columns of the points of a picture.
@@ -220,7 +238,7 @@ impl TextPlan {
             "plan of this run
   dimension         {}: {}
   method            {}: {}
-  tolerances        rtol {:e}, atol {:e} on every state, at most {} steps{}
+  tolerances        rtol {:e}, {}, at most {} steps{}
   trajectory        {rows}
   error estimate    {estimate}",
             self.start.len(),
@@ -228,10 +246,18 @@ impl TextPlan {
             self.method.name(),
             self.method.reason(),
             self.tolerances.rtol,
-            self.tolerances.atol,
+            atol_in_words(self.tolerances.atol, self.absolute_tolerances().is_some()),
             crate::error::count(self.max_steps),
             longest_in_words(self.tolerances, self.model.units())
         )
+    }
+}
+
+/// The absolute tolerance in words, where it follows the states and where it is one number for all.
+pub(super) fn atol_in_words(atol: f64, of_each: bool) -> String {
+    match of_each {
+        true => format!("atol {atol:e} of how far each state has come"),
+        false => format!("atol {atol:e} on every state"),
     }
 }
 

@@ -4,36 +4,35 @@ use super::observer::TextObserver;
 use super::plan::TextPlan;
 use crate::error::{Error, Result};
 use crate::field::{Matrix, Vector};
-use crate::integrate::{AnyField, AnyIntegrator, AnyStep, Choice, Control, Tolerances, Work};
+use crate::integrate::{
+    AnyField, AnyIntegrator, AnyObserver, AnyStep, Choice, Control, MotionUnits, Tolerances, Work,
+};
 use crate::model::TextSystem;
 use crate::scene::estimate::{Companion, GROWTH, MARGIN, PIECES, ROUNDING, confirmed};
 use crate::scene::program::Stretch;
-use crate::scene::run::{RunOutcome, Sink};
-use std::borrow::Cow;
+use crate::scene::run::{RESTS, RunOutcome, Sink};
 
 /// Runs a plan.
 ///
 /// # Errors
 /// [`Error::Parameter`] if the integrator refuses its settings; a failure on the way is in [`RunOutcome::failure`].
 pub fn run_text(plan: &TextPlan, sink: &mut dyn Sink) -> Result<RunOutcome> {
-    let mut watch = TextObserver::new(plan, &mut *sink);
-    let mut work = Work::default();
+    let mut run = Run {
+        plan,
+        watch: TextObserver::new(plan, &mut *sink),
+        units: plan.units.clone(),
+        work: Work::default(),
+    };
     let end = along(plan, |part, from| {
-        watch.begin(part.stretch, &from);
-        if part.is_empty() {
-            return Ok((from, false));
+        run.watch.begin(part.stretch, &from);
+        match part.is_empty() {
+            true => Ok((from, false)),
+            false => run.stretch(part, from),
         }
-        let left = steps_left(plan, part.stretch, &work)?;
-        let mut integrator = AnyIntegrator::new(plan.method, plan.tolerances, left)?;
-        let end = if plan.observed() {
-            let mut observer = |step: &AnyStep<'_>| Ok(watch.see(part.system, step));
-            integrator.flow(&part.field, part.stretch.span, &from, Some(&mut observer))
-        } else {
-            integrator.flow(&part.field, part.stretch.span, &from, None)
-        };
-        work += integrator.work();
-        Ok((end?, watch.stopped()))
     });
+    let Run {
+        watch, units, work, ..
+    } = run;
     let end = end.map_err(|error| of_run(plan, error));
     if let Err(error @ Error::Parameter { .. }) = end {
         return Err(error);
@@ -43,13 +42,15 @@ pub fn run_text(plan: &TextPlan, sink: &mut dyn Sink) -> Result<RunOutcome> {
     match (end, plan.estimate) {
         (Ok(end), Some(companion)) if !outcome.stopped => {
             let second = second_run(companion, plan, &mut outcome, sink);
-            match second.and_then(|second| errors(plan, &end, &second, &mut outcome)) {
+            let found =
+                second.and_then(|second| errors(plan, (&end, &second), &units, &mut outcome));
+            match found {
                 Ok(errors) => {
                     let sizes = errors.iter().zip(&end).enumerate();
                     let slides = plan.model.slab.is_some();
                     // The stress relatively; what ln psi errs by is the relative error of psi.
                     let size = |(i, (error, x)): (usize, (&f64, &f64))| match (slides, i) {
-                        (false, _) => error / (1.0 + x.abs()),
+                        (false, _) => error / (units.sizes[i] + x.abs()),
                         (true, 0) => error / x.abs(),
                         (true, _) => *error,
                     };
@@ -73,17 +74,85 @@ pub fn run_text(plan: &TextPlan, sink: &mut dyn Sink) -> Result<RunOutcome> {
     Ok(outcome)
 }
 
+/// A run on its way.
+struct Run<'a> {
+    plan: &'a TextPlan,
+    watch: TextObserver<'a>,
+    /// They grow as states come far beyond them.
+    units: MotionUnits,
+    work: Work,
+}
+
+impl Run<'_> {
+    /// Goes along a stretch; where it ends, and whether to go no further.
+    fn stretch(&mut self, part: &Part<'_>, from: Vector) -> Result<(Vector, bool)> {
+        /// How often units grow: where states go to infinity nothing is to be gained.
+        const LEGS: usize = 8;
+        let plan = self.plan;
+        let (mut now, end) = part.stretch.span;
+        let (mut here, mut legs) = (from, 1);
+        loop {
+            let units = part.units(&self.units);
+            self.watch.in_units(&units);
+            let field = units.field(part.system)?;
+            let left = steps_left(plan, part.stretch, &self.work)?;
+            let tolerances = units.inward_tolerances(plan.tolerances, plan.atol_is_given);
+            let mut integrator = AnyIntegrator::new(plan.method, tolerances, left)?;
+            let grow = !plan.atol_is_given && !part.slides && legs < LEGS;
+            let mut outgrown = None;
+            let watch = &mut self.watch;
+            let mut observer = |step: &AnyStep<'_>| {
+                let told = match plan.observed() {
+                    true => watch.see(part.system, step),
+                    false => Control::Rest(RESTS),
+                };
+                if grow
+                    && told != Control::Stop
+                    && let Some(larger) = units.outgrown(step.y1)
+                {
+                    let reached = units.outward(&Vector::from_column_slice(step.y1));
+                    outgrown = Some((step.t1 * units.time, reached, larger));
+                    return Ok(Control::Stop);
+                }
+                Ok(told)
+            };
+            let seen = plan.observed() || grow;
+            let observer = seen.then_some(&mut observer as AnyObserver<'_>);
+            let span = (now / units.time, end / units.time);
+            let reached = integrator.flow(&field, span, &units.inward(&here), observer);
+            self.work += integrator.work();
+            match (reached, outgrown) {
+                (Ok(_), Some((time, state, larger))) if time < end => {
+                    (now, here, self.units) = (time, state, larger);
+                    legs += 1;
+                }
+                (Ok(state), _) => return Ok((units.outward(&state), self.watch.stopped())),
+                (Err(error), _) => return Err(units.outward_error(error, 0)),
+            }
+        }
+    }
+}
+
 /// A stretch of a run with its equations.
 struct Part<'a> {
     stretch: &'a Stretch,
     system: &'a TextSystem,
-    field: AnyField<'a>,
+    /// Whether it has interfaces, which keep their units.
+    slides: bool,
 }
 
 impl Part<'_> {
     /// A run that ends with a change has an end on the far side of that.
     fn is_empty(&self) -> bool {
         self.stretch.span.0 == self.stretch.span.1
+    }
+
+    /// On a ramp V_H is a state more.
+    fn units(&self, of_run: &MotionUnits) -> MotionUnits {
+        match self.slides {
+            true => MotionUnits::given(self.system.states().len()),
+            false => of_run.clone(),
+        }
     }
 }
 
@@ -103,10 +172,9 @@ fn along(
         let part = Part {
             stretch: &stretch,
             system: &system,
-            field: AnyField::of_text(Cow::Borrowed(&*system))?,
+            slides: plan.model.slab.is_some(),
         };
-        // On a ramp V_H is a state more.
-        if part.field.dimension() > count {
+        if part.system.states().len() > count {
             here = here.push(stretch.driving.0);
         }
         let (end, stopped) = by(&part, here)?;
@@ -153,60 +221,79 @@ fn second_run(
         if part.is_empty() {
             return Ok((from, false));
         }
-        let mut integrator = companion.any_integrator(plan.max_steps)?;
+        let units = part.units(&plan.units);
+        let mut integrator = companion
+            .in_time(units.time)
+            .any_integrator(plan.max_steps)?;
         let mut stopped = false;
         let mut observer = |step: &AnyStep<'_>| {
-            let told = sink.reached(step.t1 / plan.until);
+            let told = sink.reached(step.t1 * units.time / plan.until);
             stopped |= told == Control::Stop;
             Ok(told)
         };
-        let end = integrator.flow(&part.field, part.stretch.span, &from, Some(&mut observer));
+        let (begin, end) = part.stretch.span;
+        let span = (begin / units.time, end / units.time);
+        let field = units.field(part.system)?;
+        let end = integrator.flow(&field, span, &units.inward(&from), Some(&mut observer));
         outcome.work += integrator.work();
         if stopped {
             return Err(Error::Interrupted);
         }
-        Ok((end?, false))
+        let end = end.map_err(|error| units.outward_error(error, 0))?;
+        Ok((units.outward(&end), false))
     })
 }
 
-/// The error of every state at the end: what the second run says, and what becomes of the rounding of the start.
+/// The error of every state at the end: what the second run says, and what becomes of the rounding of the start. The states have come as far as
+/// `reached`.
 fn errors(
     plan: &TextPlan,
-    end: &Vector,
-    second: &Vector,
+    (end, second): (&Vector, &Vector),
+    reached: &MotionUnits,
     outcome: &mut RunOutcome,
 ) -> Result<Vec<f64>> {
     let tolerances = Tolerances::equal(GROWTH)?.stepping(plan.tolerances.max_step);
+    let tolerances = plan.units.inward_tolerances(tolerances, false);
     let mut integrator = AnyIntegrator::new(Choice::Auto, tolerances, plan.max_steps)?;
     let count = plan.start.len();
     let mut tangent = Matrix::identity(count, count);
     let pieces = (PIECES / plan.stretches()?.len()).max(1);
     along(plan, |part, from| {
+        let units = part.units(&plan.units);
+        let field = units.field(part.system)?;
         let (begin, end) = part.stretch.span;
+        let (begin, end) = (begin / units.time, end / units.time);
         let time = |piece: usize| begin + (end - begin) * (piece as f64 / pieces as f64);
-        let mut y = from;
+        let mut y = units.inward(&from);
         for piece in 0..pieces {
             if part.is_empty() {
                 break;
             }
             let span = (time(piece), time(piece + 1));
-            let (next, grown) = growth(&mut integrator, &part.field, span, &y)?;
+            let (next, grown) = growth(&mut integrator, &field, span, &y)?;
             outcome.work += integrator.work();
             y = next;
             // V_H is exact, where it is a state.
             tangent = grown.view((0, 0), (count, count)) * &tangent;
         }
-        Ok((y, false))
+        Ok((units.outward(&y), false))
     })?;
-    let rounded = plan.start.map(|x| 0.5 * f64::EPSILON * x.abs());
+    let sizes = &plan.units.sizes;
+    let rounded = plan
+        .units
+        .inward(&plan.start)
+        .map(|x| 0.5 * f64::EPSILON * x.abs());
     // What is exact moves nothing, however much it would grow.
     let moved = |i: usize| -> f64 {
         let exact = |j: &usize| rounded[*j] == 0.0;
         let inexact = (0..count).filter(|j| !exact(j));
-        inexact.map(|j| tangent[(i, j)].abs() * rounded[j]).sum()
+        let all: f64 = inexact.map(|j| tangent[(i, j)].abs() * rounded[j]).sum();
+        sizes[i] * all
     };
-    let error =
-        |i: usize| MARGIN * (end[i] - second[i]).abs() + moved(i) + ROUNDING * (1.0 + end[i].abs());
+    let error = |i: usize| {
+        let rounding = ROUNDING * (reached.sizes[i] + end[i].abs());
+        MARGIN * (end[i] - second[i]).abs() + moved(i) + rounding
+    };
     Ok((0..count).map(error).collect())
 }
 

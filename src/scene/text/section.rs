@@ -1,11 +1,11 @@
 //! The return map of a system of one's own.
 
 use super::model::{TextModel, number};
-use super::plan::numerics;
+use super::plan::{atol_in_words, numerics};
 use crate::error::{Error, Result};
 use crate::field::Vector;
 use crate::friction::positive;
-use crate::integrate::{AnyField, AnyIntegrator, Choice, Control, Tolerances};
+use crate::integrate::{AnyField, AnyIntegrator, Choice, Control, MotionUnits, Tolerances};
 use crate::number::Uncertain;
 use crate::number::polynomial::Crossing;
 use crate::orbit::{OrbitAccuracy, find_from};
@@ -21,7 +21,7 @@ use crate::scene::system::Described;
 use crate::scene::units::Quantity;
 use crate::section::{Periodic, SeriesVariables, Surface, Watching, usual_patience};
 
-/// The longest time to wait for a return where nobody says otherwise.
+/// The longest time to wait for a return where nobody says otherwise, in that in which the liveliest state goes through its range.
 const PATIENCE: f64 = 1e4;
 
 /// A return map of a system of one's own, checked.
@@ -51,6 +51,10 @@ pub struct TextSectionPlan {
     pub method: Choice,
     /// The tolerances.
     pub tolerances: Tolerances,
+    /// Whether the absolute one is the user's, in the system's own units.
+    pub atol_is_given: bool,
+    /// The units in which the run is made and judged.
+    units: MotionUnits,
     /// The bound on steps.
     pub max_steps: usize,
 }
@@ -97,8 +101,14 @@ impl TextSectionPlan {
         counted(options)?;
         let (method, tolerances) = numerics(&options.numerics, model.units())?;
         let (state, value) = surface(options.surface.as_deref(), &model)?;
+        let start = model.start(options.start.as_deref())?;
+        let units = MotionUnits::of(&model, &start)?;
+        let patience = match options.patience {
+            Some(patience) => positive("patience", patience)?,
+            None => usual_patience_of(&model, &units),
+        };
         Ok(TextSectionPlan {
-            start: model.start(options.start.as_deref())?,
+            start,
             state,
             value,
             direction: if options.upwards {
@@ -108,11 +118,13 @@ impl TextSectionPlan {
             },
             skip: options.skip,
             returns: options.returns,
-            patience: positive("patience", options.patience.unwrap_or(patience(&model)))?,
+            patience,
             lyapunov: options.lyapunov,
             asked_method: options.numerics.method.clone(),
             method,
             tolerances,
+            atol_is_given: options.numerics.atol.is_some(),
+            units,
             max_steps: options.numerics.max_steps,
             model,
         })
@@ -133,7 +145,7 @@ impl TextSectionPlan {
             "plan of this return map
   dimension         {}
   method            {}: {}
-  tolerances        rtol {:e}, atol {:e} on every state, at most {} steps{}
+  tolerances        rtol {:e}, {}, at most {} steps{}
   section           {} {sense} through {}
   returns           {} after {} that are skipped; a run that does not return for {} ends
   tangents          {tangents}",
@@ -141,7 +153,7 @@ impl TextSectionPlan {
             self.method.name(),
             self.method.reason(),
             self.tolerances.rtol,
-            self.tolerances.atol,
+            atol_in_words(self.tolerances.atol, self.absolute_tolerances().is_some()),
             crate::error::count(self.max_steps),
             longest_in_words(self.tolerances, self.model.units()),
             self.model.system.states()[self.state],
@@ -152,21 +164,28 @@ impl TextSectionPlan {
         )
     }
 
+    /// What each state may err by in a step beside its relative error; `None` where one number is given for all, or for interfaces.
+    pub fn absolute_tolerances(&self) -> Option<Vec<f64>> {
+        let own = !self.atol_is_given && self.model.slab.is_none();
+        own.then(|| self.units.outward_atol(self.tolerances.atol))
+    }
+
+    /// The section in the units of the run.
     fn surface(&self) -> Surface {
         let along = |i: usize, _: usize| f64::from(u8::from(i == self.state));
         Surface {
             normal: Vector::from_fn(self.start.len(), along),
-            offset: self.value,
+            offset: self.value / self.units.sizes[self.state],
             direction: self.direction,
             chart: SeriesVariables::Plain,
         }
     }
 }
 
-fn patience(model: &TextModel) -> f64 {
+fn usual_patience_of(model: &TextModel, units: &MotionUnits) -> f64 {
     match (&model.slab, model.system.parameters()) {
         (Some(_), [driving, stiffness, ..]) => usual_patience(*driving, *stiffness),
-        _ => PATIENCE,
+        _ => PATIENCE * units.time,
     }
 }
 
@@ -197,38 +216,40 @@ fn surface(text: Option<&str>, model: &TextModel) -> Result<(usize, f64)> {
 /// # Errors
 /// [`Error::Parameter`] if the integrator refuses its settings; a failure on the way is in [`SectionOutcome::failure`].
 pub fn run_text_section(plan: &TextSectionPlan, sink: &mut dyn Sink) -> Result<SectionOutcome> {
-    let field = &plan.model.field()?;
+    let units = &plan.units;
+    let field = &units.field(&plan.model.system)?;
+    let tolerances = units.inward_tolerances(plan.tolerances, plan.atol_is_given);
     let means: Means<'_> = &|record, see| of_record(field, record, see);
     let settling = Settling {
         field,
-        start: plan.start.clone(),
+        start: units.inward(&plan.start),
         surface: plan.surface(),
         watching: Watching {
             skip: plan.skip,
             // One more, as for interfaces, so that the verdicts are on as many.
             returns: plan.returns + 1,
-            patience: plan.patience,
-            accuracy: plan.tolerances.rtol,
-            max_step: plan.tolerances.max_step,
+            patience: plan.patience / units.time,
+            accuracy: tolerances.rtol,
+            max_step: tolerances.max_step,
             waypoints: false,
         },
-        integrator: AnyIntegrator::new(plan.method, plan.tolerances, plan.max_steps)?,
+        integrator: AnyIntegrator::new(plan.method, tolerances, plan.max_steps)?,
         max_steps: plan.max_steps,
         lyapunov: plan.lyapunov,
         means,
-        by_orbit: &|periodic| of_orbit(field, periodic, plan.tolerances.max_step),
+        by_orbit: &|periodic| of_orbit(field, periodic, tolerances.max_step),
     };
     let columns = text_section_columns(&plan.model);
     let mut made = 0;
-    settling.run(
+    let outcome = settling.run(
         &mut |at, sink| {
             if made == plan.returns {
                 return Control::Continue;
             }
             let row = TextReturn {
                 number: made,
-                time: at.time,
-                state: at.state.as_slice().to_vec(),
+                time: at.time * units.time,
+                state: units.outward(&at.state).as_slice().to_vec(),
             };
             made += 1;
             let units = plan.model.units();
@@ -236,7 +257,8 @@ pub fn run_text_section(plan: &TextSectionPlan, sink: &mut dyn Sink) -> Result<S
             sink.row(&numbers.collect::<Vec<f64>>())
         },
         sink,
-    )
+    )?;
+    Ok(outcome.outward(units, plan.state))
 }
 
 /// ln |mu| / T of the periodic orbit through a point, with its period.

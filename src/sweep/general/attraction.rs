@@ -5,8 +5,8 @@ use crate::field::Vector;
 use crate::integrate::AnyField;
 use crate::section::growth;
 
-/// An equilibrium is looked for so near to a state, in units of 1 + |y|.
-const NEAR: f64 = 0.3;
+/// An equilibrium is looked for so near to a state, in units of 1 + |y|: within what a run swings around.
+const NEAR: f64 = 0.75;
 /// As many are remembered.
 const MOST: usize = 8;
 /// Newton's method ends at this step, in the same units, or fails.

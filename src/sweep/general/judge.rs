@@ -25,14 +25,16 @@ impl GeneralSweeper {
     /// Follows a run until it is told what it settles on; the row has what is known of its point.
     pub(super) fn settle(&mut self, mut run: GeneralRun, row: SweepRow) -> Settled {
         if let Err(error) = self.pass_transient(&mut run) {
-            return undecided(&run, row, error.to_string());
+            let why = run.in_words(error);
+            return undecided(&run, row, why);
         }
         loop {
             if run.recorder.ended.is_none()
                 && run.hopeless.is_none()
                 && let Err(error) = run.advance(&mut self.coarse)
             {
-                return undecided(&run, row, error.to_string());
+                let why = run.in_words(error);
+                return undecided(&run, row, why);
             }
             if let Some(told) = self.judge(&mut run, &row) {
                 return told;
@@ -58,7 +60,7 @@ impl GeneralSweeper {
                     {
                         None
                     }
-                    error => Some(undecided(run, row.clone(), error.to_string())),
+                    error => Some(undecided(run, row.clone(), run.in_words(error))),
                 };
             }
             Some(Ended::Complete | Ended::Stopped) | None => (),

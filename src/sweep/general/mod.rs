@@ -14,7 +14,7 @@ use super::{Grid, SweepRow, SweepSettings};
 use crate::equilibrium::Enclosed;
 use crate::error::Result;
 use crate::field::Vector;
-use crate::integrate::{AnyField, AnyIntegrator, Choice, MAX_STEPS, Tolerances};
+use crate::integrate::{AnyField, AnyIntegrator, Choice, MAX_STEPS, MotionUnits, Tolerances};
 use crate::section::{Regime, Surface};
 use run::GeneralRun;
 use std::fmt::Debug;
@@ -31,9 +31,11 @@ pub trait SystemPoints: Debug + Send + Sync {
     fn at(&self, values: &[f64], start: usize, random: RandomStart) -> Result<SystemPoint>;
 }
 
-/// A system at a point of a grid.
+/// A system at a point of a grid, in the units in which it moves by about 1.
 #[derive(Debug)]
 pub struct SystemPoint {
+    /// These units.
+    pub units: MotionUnits,
     /// What moves.
     pub field: AnyField<'static>,
     /// Where its run starts.
@@ -67,6 +69,17 @@ pub enum SectionPlace {
 }
 
 impl SectionPlace {
+    /// The same of a system in these units, which has no time of its own to wait.
+    pub fn inward(self, units: &MotionUnits) -> Self {
+        match self {
+            SectionPlace::Untimed(mut surface) => {
+                surface.offset /= units.sizes[surface.normal.iamax()];
+                SectionPlace::Untimed(surface)
+            }
+            place => place,
+        }
+    }
+
     /// Where a variable, of so many, has a value and falls.
     pub fn at(variable: usize, dimension: usize, value: f64) -> Self {
         SectionPlace::Untimed(run::across(variable, dimension, value))
@@ -77,6 +90,19 @@ impl SectionPlace {
 struct Settled {
     row: SweepRow,
     attractor: Option<Vector>,
+}
+
+impl Settled {
+    /// The same in the system's own units; the section is in this variable. Words have them already.
+    fn outward(mut self, units: &MotionUnits, variable: usize) -> Self {
+        let size = units.sizes[variable];
+        let row = &mut self.row;
+        row.period = row.period.map(|period| period * units.time);
+        row.range = row.range.map(|(low, high)| (low * size, high * size));
+        row.lyapunov_max = row.lyapunov_max.map(|x| units.outward_rate(x));
+        self.attractor = self.attractor.map(|state| units.outward(&state));
+        self
+    }
 }
 
 /// Computes rows of any system; its integrators are used over and over.
@@ -128,15 +154,19 @@ impl GeneralSweeper {
                 attractor: None,
             },
             Ok(mut point) => {
-                point.start = before.unwrap_or(point.start);
+                if let Some(before) = before {
+                    point.start = point.units.inward(&before);
+                }
+                let start = point.units.outward(&point.start);
                 let row = SweepRow::new(
                     number,
                     at.parameters(&values),
-                    point.start.as_slice().to_vec(),
+                    start.as_slice().to_vec(),
                     Regime::Undecided,
                 );
                 let run = GeneralRun::new(point, settings);
-                self.settle(run, row)
+                let (units, variable) = (run.units.clone(), run.variable);
+                self.settle(run, row).outward(&units, variable)
             }
         }
     }

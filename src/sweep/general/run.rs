@@ -5,9 +5,9 @@ use super::super::closing::{FEWEST_TO_CLOSE, closing};
 use super::super::watch::{SWING, see, turn};
 use super::attraction::Attraction;
 use super::{Enclosure, SectionPlace, SystemPoint};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::field::Vector;
-use crate::integrate::{AnyField, AnyIntegrator, AnyStep, Control};
+use crate::integrate::{AnyField, AnyIntegrator, AnyStep, Control, MotionUnits};
 use crate::number::polynomial::Crossing;
 use crate::section::{
     AT_START, Ended, Recorder, Return, SeriesVariables, Surface, Watched, Watching,
@@ -22,7 +22,7 @@ const HELD: f64 = 1e-5;
 const LONGER: f64 = 10.0;
 /// Steps between two looks for an equilibrium.
 pub(super) const BETWEEN_LOOKS: usize = 32;
-/// A state beyond this goes to infinity.
+/// A state beyond this, in its unit, goes to infinity.
 const INFINITE: f64 = 1e100;
 /// Windows, one after the other, in which a run that never turns grows each time by more than this factor, until it is seen to go on so.
 const GROWING_WINDOWS: usize = 4;
@@ -32,6 +32,7 @@ const LEAST_UNIT: f64 = 1e-2;
 
 /// A run of any system.
 pub(super) struct GeneralRun {
+    pub units: MotionUnits,
     pub field: AnyField<'static>,
     pub equal_parts: bool,
     pub place: SectionPlace,
@@ -83,6 +84,7 @@ impl GeneralRun {
             SectionPlace::Middle(state) => (across(*state, dimension, 0.0), f64::INFINITY),
         };
         let mut run = GeneralRun {
+            units: point.units,
             field: point.field,
             equal_parts: point.equal_parts,
             variable: surface.normal.iamax(),
@@ -132,6 +134,11 @@ impl GeneralRun {
         }
     }
 
+    /// An error in words, in the system's own units.
+    pub fn in_words(&self, error: Error) -> String {
+        self.units.outward_error(error, self.variable).to_string()
+    }
+
     /// The returns that tell.
     pub fn returns(&self) -> &[Return] {
         &self.recorder.returns[self.fresh.min(self.recorder.returns.len())..]
@@ -151,6 +158,7 @@ impl GeneralRun {
         let end = (self.time + 2.0 * all * self.watching.patience).min(f64::MAX);
         let (now, from) = (self.time, self.state.clone());
         let GeneralRun {
+            units,
             field,
             surface,
             variable,
@@ -178,7 +186,7 @@ impl GeneralRun {
             *time = step.t1;
             state.copy_from_slice(step.y1);
             see_all(reach, step, *variable);
-            if goes_to_infinity(step, hopeless) {
+            if goes_to_infinity(units, step, hopeless) {
                 return Ok(Control::Stop);
             }
             if recorder.steps % BETWEEN_LOOKS == 0
@@ -232,8 +240,9 @@ impl GeneralRun {
         self.growing = Growing { size, windows };
         if windows >= GROWING_WINDOWS && self.hopeless.is_none() {
             self.hopeless = Some(format!(
-                "it goes on growing without turning: a state has come to {size:.1e} at t = {:.6e}",
-                self.time
+                "it goes on growing without turning: a state has come to {:.1e} at t = {:.6e}",
+                self.units.outward(&self.state).amax(),
+                self.time * self.units.time
             ));
         }
     }
@@ -316,15 +325,20 @@ pub(super) fn see_all(reach: &mut [(f64, f64)], step: &AnyStep<'_>, variable: us
 }
 
 /// Whether a step leads to infinity; then the reason is put down.
-pub(super) fn goes_to_infinity(step: &AnyStep<'_>, hopeless: &mut Option<String>) -> bool {
-    let beyond = step.y1.iter().any(|y| y.abs() > INFINITE);
-    if beyond {
+pub(super) fn goes_to_infinity(
+    units: &MotionUnits,
+    step: &AnyStep<'_>,
+    hopeless: &mut Option<String>,
+) -> bool {
+    let beyond = |(y, size): (&f64, &f64)| (y.abs() > INFINITE).then(|| y * size);
+    let value = step.y1.iter().zip(&units.sizes).find_map(beyond);
+    if let Some(value) = value {
         *hopeless = Some(format!(
-            "it goes to infinity: a state is beyond {INFINITE:e} at t = {:.6e}",
-            step.t1
+            "it goes to infinity: a state is at {value:.1e} at t = {:.6e}",
+            step.t1 * units.time
         ));
     }
-    beyond
+    value.is_some()
 }
 
 /// That a run ends at a stable equilibrium.

@@ -68,6 +68,7 @@ impl GeneralSweeper {
         let (now, from) = (run.time, run.state.clone());
         let (mut steps, mut turns, mut rising) = (0, 0, None);
         let GeneralRun {
+            units,
             field,
             time,
             state,
@@ -88,7 +89,7 @@ impl GeneralSweeper {
             see_all(reach, step, *variable);
             steps += 1;
             recorder.steps += 1;
-            if goes_to_infinity(step, hopeless) {
+            if goes_to_infinity(units, step, hopeless) {
                 return Ok(Control::Stop);
             }
             if steps % BETWEEN_LOOKS == 0 {

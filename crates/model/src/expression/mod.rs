@@ -284,6 +284,11 @@ impl Builder {
         {
             return Ok(place);
         }
+        if binary == Binary::Quotient
+            && let Some(place) = self.with_sign(a, b)?
+        {
+            return Ok(place);
+        }
         let sorted = (a.min(b), a.max(b));
         self.place(match binary {
             Binary::Sum => Operation::Sum(sorted.0, sorted.1),

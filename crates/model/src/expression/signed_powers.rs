@@ -1,4 +1,4 @@
-//! Signed powers: products such as |z|^q z are rewritten as |z|^(q + 1) with the sign of z. Its derivative (q + 1) |z|^q is finite at z = 0,
+//! Signs, and signed powers: quotients such as z/|z| are the sign of z, also at z = 0, and products such as |z|^q z are rewritten as |z|^(q + 1) with the sign of z. Its derivative (q + 1) |z|^q is finite at z = 0,
 //! where the derivative of |z|^q alone may be infinite.
 
 use super::ratios::Factor;
@@ -34,6 +34,22 @@ impl Builder {
             return self.product(all, std::iter::empty()).map(Some);
         }
         Ok(None)
+    }
+
+    /// Returns the quotient with a sign in place of z/|z|, if a factor z is over |z|.
+    pub(super) fn with_sign(&mut self, over: Place, under: Place) -> Result<Option<Place>> {
+        let Operation::Call(Function::Abs, argument) = self.operations[under] else {
+            return Ok(None);
+        };
+        let mut factors = Vec::new();
+        self.factors(over, true, &mut factors);
+        let meets = |factor: &Factor| factor.above && factor.place == argument;
+        let Some(at) = factors.iter().position(meets) else {
+            return Ok(None);
+        };
+        let one = self.number(1.0)?;
+        factors[at].place = self.place(Operation::Signed(one, argument))?;
+        self.product(factors, std::iter::empty()).map(Some)
     }
 
     /// Returns |z|, z and q if the operation is |z|^q; q is `None` for a square root.

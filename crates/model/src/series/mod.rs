@@ -62,7 +62,7 @@ pub(crate) use handle::{Series, value};
 pub(crate) use lanes::{Eight, Four, Pair};
 pub(crate) use linearised::longest_of_terms;
 pub(crate) use plain::Both;
-pub(crate) use recorded::{ByRecording, Recorded, RecordedExpressions};
+pub(crate) use recorded::{ByRecording, KeptProgram, Recorded, RecordedExpressions};
 pub(crate) use stepper::{ByFormula, Recurrences, Stepper};
 pub(crate) use tape::{Order, ROOM};
 pub use transport::TaylorMap;

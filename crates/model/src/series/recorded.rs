@@ -15,6 +15,7 @@ use super::{Four, Pair, avx2};
 use crate::expression::Expressions;
 use crate::number::{DoubleDouble, Real};
 use std::ops::{Deref, DerefMut};
+use std::sync::OnceLock;
 
 /// Coefficients that there is room for.
 const ROOM: usize = MAX_ORDER + 1;
@@ -32,9 +33,21 @@ pub struct Recorded<S, const N: usize, const P: usize> {
     pub symmetric: bool,
 }
 
+/// The program of a formula without derivatives, and the same in two lanes where it has them: made once for all solutions of a field.
+#[derive(Debug, Clone, Default)]
+pub struct KeptProgram(OnceLock<Recordings>);
+
+#[derive(Debug, Clone)]
+struct Recordings {
+    single: Program,
+    #[cfg(target_arch = "x86_64")]
+    in_lanes: Option<Program>,
+}
+
 /// A recorded formula: its variables, the slip rates among its outputs, the parameters in which it has derivatives.
 pub struct Recording<'a> {
     record: RecordFormula<'a>,
+    kept: Option<&'a KeptProgram>,
     variables: usize,
     slip_rates: usize,
     /// In how many parameters it has derivatives.
@@ -48,18 +61,32 @@ impl<'a> Recording<'a> {
         (self.variables, self.slip_rates)
     }
 
-    fn solution(self) -> Box<dyn Trajectory + 'a> {
-        let shape = self.shape();
-        #[cfg(target_arch = "x86_64")]
-        if let Some(simd) = avx2() {
-            let program = (self.record)(&vec![1.0; self.variables]);
-            if let Some(program) = program.in_two_lanes() {
-                let any = Pair::new(simd, [0.0; 2]);
-                let (record, watched) = (self.record, self.slip_rates);
-                return Box::new(Interpreted::of_program(record, program, watched, ROOM, any));
+    /// The programs, recorded here or kept from before.
+    fn recordings(&self) -> Recordings {
+        let recorded = || {
+            let single = (self.record)(&vec![1.0; self.variables]);
+            Recordings {
+                #[cfg(target_arch = "x86_64")]
+                in_lanes: single.in_two_lanes(),
+                single,
             }
+        };
+        match self.kept {
+            Some(KeptProgram(kept)) => kept.get_or_init(recorded).clone(),
+            None => recorded(),
         }
-        Box::new(Interpreted::new(self.record, shape, ROOM, 0.0))
+    }
+
+    fn solution(self) -> Box<dyn Trajectory + 'a> {
+        let recordings = self.recordings();
+        let (record, watched) = (self.record, self.slip_rates);
+        #[cfg(target_arch = "x86_64")]
+        if let (Some(simd), Some(program)) = (avx2(), recordings.in_lanes) {
+            let any = Pair::new(simd, [0.0; 2]);
+            return Box::new(Interpreted::of_program(record, program, watched, ROOM, any));
+        }
+        let program = recordings.single;
+        Box::new(Interpreted::of_program(record, program, watched, ROOM, 0.0))
     }
 
     fn reference(self) -> Box<dyn Trajectory + 'a> {
@@ -203,6 +230,7 @@ impl<'a, S: Equations<N, P> + 'a, const N: usize, const P: usize> ByRecording<'a
         let constant = self.parameters.map(f64::constant);
         let slip_rates = self.equations.slip_rates([1.0; N], constant);
         Recording {
+            kept: None,
             slip_rates: slip_rates.iter().flatten().count(),
             symmetric: self.symmetric,
             variables: N,
@@ -234,11 +262,18 @@ pub struct RecordedExpressions<'a, const N: usize> {
     pub slip_rates: Option<&'a Expressions>,
     /// The parameters.
     pub parameters: &'a [f64],
+    /// Their program, as far as it is made.
+    pub kept: &'a KeptProgram,
 }
 
 impl<'a, const N: usize> ByRecording<'a, N> for RecordedExpressions<'a, N> {
     fn recording(self, free: Option<&[usize]>) -> Recording<'a> {
-        Recording::of_expressions((self.rates, self.slip_rates), N, self.parameters, free)
+        let formulas = (self.rates, self.slip_rates);
+        let recording = Recording::of_expressions(formulas, N, self.parameters, free);
+        Recording {
+            kept: Some(self.kept),
+            ..recording
+        }
     }
 }
 
@@ -253,6 +288,7 @@ impl<'a> Recording<'a> {
         let free = free.map(<[usize]>::to_vec);
         let own_factors = rates.own_factors(variables, parameters);
         Recording {
+            kept: None,
             slip_rates: slip_rates.map_or(0, Expressions::count),
             symmetric: false,
             variables,
