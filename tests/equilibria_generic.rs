@@ -115,6 +115,7 @@ fn lorenz_has_a_pitchfork_and_a_subcritical_hopf_point() {
         fields: &fields,
         along: "rho",
         scale: None,
+        bounds: &[],
     };
     for longest in [0.5, 2.0] {
         let settings = Settings::new((0.0, 30.0), longest).unwrap();
@@ -163,6 +164,7 @@ fn the_brusselator_oscillates_beyond_its_hopf_point() {
             fields: &fields,
             along: "b",
             scale: None,
+            bounds: &[],
         };
         let settings = Settings::new((0.5, 8.0), 0.3).unwrap();
         let start = Vector::from_vec(vec![a, 0.5 / a]);
@@ -185,6 +187,7 @@ fn both_folds_of_a_cubic() {
         fields: &fields,
         along: "p",
         scale: None,
+        bounds: &[],
     };
     let mut settings = Settings::new((-2.0, 1.0), 0.2).unwrap();
     settings.wanted = vec![-0.5];
@@ -215,6 +218,7 @@ fn a_start_of_another_dimension_is_an_error() {
         fields: &fields,
         along: "p",
         scale: None,
+        bounds: &[],
     };
     let onward = Onward::along(Vector::zeros(2), -2.0, true);
     let refused = family.follow(&onward, &settings, &mut |_| ControlFlow::Continue(()));
@@ -283,6 +287,7 @@ fn a_conservative_system_has_no_hopf_points() {
         fields: &|p| AnyField::new::<2>(Box::new(Conservative { p })),
         along: "p",
         scale: None,
+        bounds: &[],
     };
     for longest in [0.3, 0.05, 0.01] {
         let settings = Settings::new((-2.0, 2.0), longest).unwrap();

@@ -38,6 +38,7 @@ fn along(name: &str, from: f64, settings: &Settings) -> Vec<FoundEquilibrium> {
         fields: &fields,
         along: name,
         scale: None,
+        bounds: &[],
     };
     let w = slab.steady_log_state();
     let start = Vector::from_column_slice(&[slab.steady_stress(), w, w]);

@@ -18,6 +18,8 @@ mod arcs;
 mod attraction;
 mod batch;
 mod boxes;
+#[cfg(not(feature = "parquet"))]
+mod branch_ends;
 mod branches;
 mod branches_equilibria;
 mod branches_once;
@@ -80,6 +82,8 @@ mod many;
 mod many_dimensions;
 mod many_equilibria;
 mod many_methods;
+#[cfg(not(feature = "parquet"))]
+mod multiple_points;
 #[cfg(not(feature = "parquet"))]
 mod normal_forms_of_systems;
 mod numbers;

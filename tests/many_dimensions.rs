@@ -408,6 +408,7 @@ fn labelled<S: Equations<N, 2> + 'static, const N: usize>(
         fields: &fields,
         along: S::PARAMETERS[0],
         scale: None,
+        bounds: &[],
     };
     let settings = Settings::new((from.min(to), from.max(to)), 0.2).expect("settings");
     let mut found = Vec::new();

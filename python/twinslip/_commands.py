@@ -536,7 +536,7 @@ class Commands:
             computed too [default: 0]
         box : dict of (A, B), optional
             With ``system``, or a ``law`` from a file: branches of equilibria begin at all in a
-            box, a range for every state: x=-10:10,y=0:5
+            box, a range for every state, and end where they leave it: x=-10:10,y=0:5
         start : str or sequence of float, optional
             Branches of orbits begin at or near this point of an orbit, at ``from_``:
             TAU,PSI1,PSI2, with ``system`` the values of all states in their order. Branches of
@@ -628,7 +628,7 @@ class Commands:
             NAME=V1,V2,...: values of one of these to land on exactly, at every crossing
         box : dict of (A, B), optional
             With ``system``, or a ``law`` from a file: branches of equilibria begin at all in a
-            box, a range for every state: x=-10:10,y=0:5
+            box, a range for every state, and end where they leave it: x=-10:10,y=0:5
         start : str or sequence of float, optional
             Branches of orbits begin at or near this point of an orbit, at ``from_``:
             TAU,PSI1,PSI2, with ``system`` the values of all states in their order. Branches of

@@ -66,6 +66,11 @@ pub trait SolutionCurve {
         1.0
     }
 
+    /// The factor by which steps from a point may be longer than the longest.
+    fn stretch(&self, _: &Self::Point) -> f64 {
+        1.0
+    }
+
     /// After a step from here has failed: the same point otherwise described, to be tried once more. `again` if it has been
     /// described anew already.
     ///

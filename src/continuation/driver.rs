@@ -140,7 +140,7 @@ impl<C: SolutionCurve> Continuation<C> {
     /// prediction along the tangent grows with its square (den Heijer and Rheinboldt 1981, SIAM J. Numer. Anal. 18, 925-948).
     fn step(&mut self) -> Result<CurveStep<C::Point>, Stop> {
         self.progresses()?;
-        let mut longest = self.control.longest;
+        let mut longest = self.control.longest * self.curve.stretch(&self.now);
         loop {
             let length = self.length;
             let failed = match self.curve.correct(&self.now, length) {

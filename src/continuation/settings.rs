@@ -22,6 +22,8 @@ pub struct Settings {
     pub range: (f64, f64),
     /// Values of lambda to land on.
     pub wanted: Vec<f64>,
+    /// Where the unknowns are larger than this the longest step grows with the square of their norm: the curve comes to infinity in a finite number of steps.
+    pub size: f64,
 }
 
 impl Settings {
@@ -39,6 +41,7 @@ impl Settings {
             tolerance: 1e-13,
             range,
             wanted: Vec::new(),
+            size: f64::INFINITY,
         }
         .checked()
     }

@@ -190,6 +190,10 @@ impl SolutionCurve for ZeroCurve<'_> {
         }
     }
 
+    fn stretch(&self, at: &TestedPoint) -> f64 {
+        (at.point.u.norm() / self.settings.size).powi(2).max(1.0)
+    }
+
     fn correct(&mut self, from: &TestedPoint, distance: f64) -> Result<(TestedPoint, f64)> {
         let CurvePoint {
             tangent: along,

@@ -37,7 +37,8 @@ pub struct ContinuationOptions {
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(next_help_heading = "Search")]
 pub struct SearchOptions {
-    /// With --system, or a --law from a file: branches of equilibria begin at all in a box, a range for every state: x=-10:10,y=0:5
+    /// With --system, or a --law from a file: branches of equilibria begin at all in a box, a range for every state, and end
+    /// where they leave it: x=-10:10,y=0:5
     #[arg(
         id = "box",
         long = "box",

@@ -18,6 +18,7 @@ pub(crate) mod hopf;
 mod hopf_curve;
 pub(crate) mod hopf_special;
 pub(super) mod lyapunov;
+pub mod multiple;
 mod pieces;
 mod rates;
 pub(super) mod special;

@@ -1,9 +1,13 @@
 //! Branches of equilibria along one parameter, with all that branches off.
 
+use super::runaway::{Runaway, Runs};
 use super::splits::with_splits;
-use super::{GeneralBranch, GeneralObserver, GeneralPoint, GeneralSolution, SAME, Teller};
+use super::{
+    GeneralBranch, GeneralEvent, GeneralObserver, GeneralPoint, GeneralSolution, SAME, Teller,
+};
 use crate::bifurcation::equilibria::generic::{FieldEquilibria, FoundEquilibrium, Onward};
 use crate::bifurcation::equilibria::generic_curve::{EquilibriumBifurcation, EquilibriumCurve};
+use crate::bifurcation::equilibria::multiple::MultiplePoint;
 use crate::bifurcation::{Criticality, Label};
 use crate::continuation::{Settings, Stop};
 use crate::error::Result;
@@ -30,13 +34,36 @@ const ASIDE: f64 = 1e-3;
 pub fn equilibria(branch: &GeneralBranch<'_>, seen: GeneralObserver<'_>) -> Result<()> {
     with_splits(branch, seen, |seen| {
         let mut teller = Teller::new(seen, &branch.following);
-        EquilibriumBranches::new(branch).all(&mut |point, special| teller.point(point, special))?;
+        EquilibriumBranches::new(branch).all(&mut |point, kind| match kind {
+            Reported::Row => teller.point(point, false),
+            Reported::Special => teller.point(point, true),
+            Reported::Limit => teller.tell(GeneralEvent::Special(point)),
+        })?;
         teller.end()
     })
 }
 
-/// Who is told of a point, and whether it is special.
-type PointObserver<'a> = &'a mut dyn FnMut(GeneralPoint, bool) -> ControlFlow<()>;
+/// An observer of points and their kinds.
+type PointObserver<'a> = &'a mut dyn FnMut(GeneralPoint, Reported) -> ControlFlow<()>;
+
+/// The kind of a point that is reported.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Reported {
+    /// A row.
+    Row,
+    /// A special point, with its row.
+    Special,
+    /// The limit of a branch, which is no point of it.
+    Limit,
+}
+
+/// A branch point at which several eigenvalues are 0.
+struct Multiple {
+    point: MultiplePoint,
+    /// Where branches that begin there pass a cylinder around it, (state, coordinate), and its radius.
+    begins: Vec<Vector>,
+    radius: f64,
+}
 
 /// All branches, and what is known of them so far.
 pub(super) struct EquilibriumBranches<'b, 'a> {
@@ -46,6 +73,10 @@ pub(super) struct EquilibriumBranches<'b, 'a> {
     ends: Vec<Vector>,
     /// Branch points, and how many branches passed each.
     crossings: Vec<(FoundEquilibrium, usize)>,
+    /// Branch points at which several eigenvalues are 0.
+    multiples: Vec<Multiple>,
+    /// The points of all branches, (state, coordinate), branch by branch.
+    traces: Vec<Vec<Vector>>,
 }
 
 impl<'b, 'a> EquilibriumBranches<'b, 'a> {
@@ -55,6 +86,8 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
             count: 0,
             ends: Vec::new(),
             crossings: Vec::new(),
+            multiples: Vec::new(),
+            traces: Vec::new(),
         }
     }
 
@@ -81,10 +114,22 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
                 }
             }
         }
-        // The list grows as it is gone through.
-        let mut i = 0;
-        while i < self.crossings.len() {
-            let (point, passed) = self.crossings[i].clone();
+        // The lists grow as they are gone through.
+        let (mut i, mut multiple, mut which) = (0, 0, 0);
+        loop {
+            if multiple < self.multiples.len() {
+                if self.begin(multiple, which, seen)?.is_break() {
+                    return Ok(());
+                }
+                which += 1;
+                if which >= self.multiples[multiple].begins.len() {
+                    (multiple, which) = (multiple + 1, 0);
+                }
+                continue;
+            }
+            let Some((point, passed)) = self.crossings.get(i).cloned() else {
+                break;
+            };
             i += 1;
             if passed > 1 {
                 continue;
@@ -101,7 +146,10 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
                     continue;
                 }
                 begun.push(begin);
-                if self.inside(onward.parameter) && self.follow(&onward, seen)?.is_break() {
+                if self.inside(onward.parameter)
+                    && self.in_box(&onward.state)
+                    && self.follow(&onward, seen)?.is_break()
+                {
                     return Ok(());
                 }
             }
@@ -109,14 +157,73 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
         Ok(())
     }
 
+    /// One of the branches that begin at a multiple branch point, if none is known that passes there.
+    fn begin(
+        &mut self,
+        multiple: usize,
+        which: usize,
+        seen: PointObserver<'_>,
+    ) -> Result<ControlFlow<()>> {
+        let Some(begin) = self.multiples[multiple].begins.get(which) else {
+            return Ok(Continue(()));
+        };
+        let (state, parameter) = apart(begin);
+        if !self.inside(parameter) || !self.in_box(&state) || self.passes(multiple, which) {
+            return Ok(Continue(()));
+        }
+        let direction = (begin - self.multiples[multiple].point.place()).normalize();
+        let onward = Onward {
+            state,
+            parameter,
+            direction,
+            across: true,
+        };
+        self.follow(&onward, seen)
+    }
+
+    /// Whether a branch that is known is one of those that begin at a multiple branch point: it passes the cylinder there, and nearest to this one.
+    fn passes(&self, multiple: usize, which: usize) -> bool {
+        /// Of the radius: where it passes.
+        const NEAR: f64 = 0.5;
+        let Multiple {
+            point,
+            begins,
+            radius,
+        } = &self.multiples[multiple];
+        let place = |x: &Vector| {
+            let (state, parameter) = apart(x);
+            self.place(&state, parameter)
+        };
+        let begins: Vec<Vector> = begins.iter().map(place).collect();
+        let mut steps = self.traces.iter().flat_map(|trace| trace.windows(2));
+        steps.any(|step| {
+            let [a, b] = [&step[0], &step[1]].map(|x| point.radius(x) - radius);
+            if a * b > 0.0 || a == b {
+                return false;
+            }
+            let passed = place(&(&step[0] + (&step[1] - &step[0]) * (a / (a - b))));
+            let distance = |begin: &Vector| (begin - &passed).norm();
+            let here = distance(&begins[which]);
+            here < NEAR * radius && begins.iter().all(|other| here <= distance(other))
+        })
+    }
+
+    /// Whether a state is in the box, where there is one.
+    fn in_box(&self, state: &Vector) -> bool {
+        let mut bounds = self.branch.system.bounds.iter().zip(state);
+        bounds.all(|(bound, x)| (bound.range.0..=bound.range.1).contains(x))
+    }
+
     pub fn with_family<R>(&self, then: impl FnOnce(&FieldEquilibria<'_>) -> R) -> R {
         let (system, held) = (self.branch.system, self.branch.held);
         let fields = |x: f64| system.family.field([x, held]);
         let scale = |x: f64| system.family.scale([x, held])[0];
+        let bounds: Vec<_> = system.bounds.iter().map(|bound| bound.range).collect();
         then(&FieldEquilibria {
             fields: &fields,
             along: system.names[0],
             scale: Some(&scale),
+            bounds: &bounds,
         })
     }
 
@@ -152,14 +259,14 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
         let mut back = Vec::new();
         let number = self.count;
         let onward = Onward::along(state.clone(), begin, false);
-        let closed = self.half(&onward, number, &mut |point, special| {
-            back.push((point, special));
+        let closed = self.half(&onward, number, &mut |point, kind| {
+            back.push((point, kind));
             Continue(())
         })?;
         self.count += 1;
         let beginning = back.first().cloned();
-        for (point, special) in back.into_iter().rev() {
-            if seen(point, special).is_break() {
+        for (point, kind) in back.into_iter().rev() {
+            if seen(point, kind).is_break() {
                 return Ok(Break(()));
             }
         }
@@ -168,12 +275,12 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
         }
         let onward = Onward::along(state.clone(), begin, true);
         let mut first = beginning.is_some();
-        let forth = self.half(&onward, number, &mut |point, special| {
+        let forth = self.half(&onward, number, &mut |point, kind| {
             // Both ways begin with the same point.
             if std::mem::replace(&mut first, false) {
                 return Continue(());
             }
-            seen(point, special)
+            seen(point, kind)
         })?;
         Ok(forth.told)
     }
@@ -198,21 +305,25 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
         let longest = LONGEST * size * self.branch.following.step;
         let settings = Settings {
             wanted,
+            size,
             max_points: self.branch.following.max_points + 1,
             ..Settings::new((low, high), longest)?
         };
         let (mut told, mut last, mut place) = (Continue(()), None, None::<Vector>);
         let (mut ends, mut crossings) = (Vec::new(), Vec::new());
+        let (mut multiples, mut trace) = (Vec::<Multiple>::new(), Vec::new());
+        let (mut runaway, mut runs) = (Runaway::new(size, (low, high)), None);
         let mut begun = false;
         let mut look = |found: &FoundEquilibrium| {
             let here = found.state.push(found.parameter);
+            trace.push(here.clone());
             // From a branch point a branch begins without a label of its own.
             let first = !std::mem::replace(&mut begun, true);
             let begins = first && (onward.across || inside.contains(&onward.parameter));
             let asked = |label: &Label| match label {
                 Label::Uz => at.contains(&found.parameter),
                 // A closed branch ends where it began.
-                Label::Ep => [low, high].contains(&found.parameter),
+                Label::Ep => found.leaves.is_some() || [low, high].contains(&found.parameter),
                 _ => true,
             };
             let label = match begins {
@@ -226,6 +337,19 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
             if label == Some(Label::Bp) && found.together == 0 {
                 crossings.push(found.clone());
             }
+            let mut note = None;
+            if let Some(multiple) = &found.multiple {
+                let place = multiple.place();
+                let mut known = self.multiples.iter().chain(&multiples);
+                let at = known.position(|one| near(&one.point.place(), &place));
+                if at.is_none() {
+                    multiples.push(self.multiple(multiple, 2.0 * longest));
+                }
+                let mut known = self.multiples.iter().chain(&multiples);
+                note = at
+                    .map_or(known.clone().last(), |at| known.nth(at))
+                    .map(Multiple::note);
+            }
             // The short steps that tell a crossing from a near miss are none to show.
             let short = place
                 .as_ref()
@@ -235,9 +359,21 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
             }
             let before = place.replace(here);
             let mirrors = |before: &Vector| self.branch.system.mirrors(before, &found.state);
-            let point = self.point(number, found, label);
+            let mut point = self.point(number, found, label);
+            point.note = note.or(point.note);
             last = Some(point.clone());
-            told = seen(point, label.is_some());
+            let kind = if label.is_some() {
+                Reported::Special
+            } else {
+                Reported::Row
+            };
+            told = seen(point, kind);
+            if label.is_none() {
+                runs = runaway.passes(found.state.norm(), found.parameter);
+            }
+            if runs.is_some() {
+                return Break(());
+            }
             match before.as_ref().is_some_and(mirrors) {
                 // What follows is the mirror image of what is told.
                 true if label == Some(Label::Bp) => Break(()),
@@ -257,23 +393,84 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
             Err(error) => return Err(error),
         };
         self.ends.extend(ends);
+        self.multiples.extend(multiples);
+        self.traces.push(trace);
         for found in crossings {
             self.cross(found);
         }
         match &followed.stopped {
-            Stop::Observer | Stop::RangeEnd | Stop::Closed => {}
+            Stop::Observer | Stop::RangeEnd | Stop::Ended(_) | Stop::Closed => {}
             other => {
-                if let Some(mut point) = last {
+                if let Some(mut point) = last.take() {
                     point.label = Some(Label::Mx);
                     point.note = Some(other.to_string());
-                    told = seen(point, true);
+                    told = seen(point, Reported::Special);
                 }
             }
+        }
+        if let (Some(runs), Some(last), Continue(())) = (runs, last, told) {
+            told = self.to_infinity(runs, last, seen);
         }
         Ok(Half {
             told,
             stopped: Some(followed.stopped),
         })
+    }
+
+    /// A branch point at which several eigenvalues are 0, with the branches that begin there; cylinders have at first this radius.
+    fn multiple(&self, point: &MultiplePoint, radius: f64) -> Multiple {
+        let branches = self.with_family(|family| point.branches(family, radius));
+        let (all, radius) = branches.unwrap_or_default();
+        // Mirror images are one.
+        let place = |begin: &Vector| {
+            let (state, parameter) = apart(begin);
+            self.place(&state, parameter)
+        };
+        let mut begins: Vec<Vector> = Vec::new();
+        for begin in all {
+            if !begins
+                .iter()
+                .any(|other| near(&place(other), &place(&begin)))
+            {
+                begins.push(begin);
+            }
+        }
+        Multiple {
+            point: point.clone(),
+            begins,
+            radius,
+        }
+    }
+
+    /// Reports that a branch runs to infinity after its last point.
+    fn to_infinity(
+        &self,
+        runs: Runs,
+        last: GeneralPoint,
+        seen: PointObserver<'_>,
+    ) -> ControlFlow<()> {
+        let system = &self.branch.system;
+        let point = GeneralPoint {
+            label: Some(Label::Ep),
+            ..last
+        };
+        let Runs::At(limit) = runs else {
+            let note = Some("the branch runs to infinity".to_owned());
+            return seen(GeneralPoint { note, ..point }, Reported::Special);
+        };
+        let note = format!(
+            "the branch runs to infinity as {} tends to this value",
+            system.names[0]
+        );
+        let point = GeneralPoint {
+            at: [limit.value, point.at[1]],
+            note: Some(note),
+            ..point
+        };
+        seen(
+            point.placed(system.family, [limit.uncertainty, 0.0]),
+            Reported::Limit,
+        )
     }
 
     /// One more branch passes a branch point.
@@ -288,14 +485,23 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
     }
 
     fn point(&self, number: usize, found: &FoundEquilibrium, label: Option<Label>) -> GeneralPoint {
-        let held = self.branch.held;
+        let (system, held) = (self.branch.system, self.branch.held);
         let solution = |state: &Vector| GeneralSolution::Equilibrium {
             state: state.clone(),
             eigenvalues: found.eigenvalues.clone(),
         };
-        let system = self.branch.system;
+        let multiplicity = match label {
+            Some(Label::Bp) => Some(found.together.max(1)),
+            Some(Label::Hb) => Some((found.together / 2).max(1)),
+            _ => None,
+        };
+        let leaves = found
+            .leaves
+            .map(|(variable, upper)| system.bounds[variable].said[usize::from(upper)].clone());
         let rough = GeneralPoint {
             label,
+            multiplicity,
+            note: leaves,
             crossing: found.crossing,
             period: found.period.map(|t| Uncertain::new(t, f64::INFINITY)),
             coefficient: found.coefficient,
@@ -304,7 +510,7 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
                 .map(|l_1| criticality(l_1, &found.eigenvalues)),
             ..GeneralPoint::new(number, [found.parameter, held], solution(&found.state))
         };
-        if found.together > 0 {
+        if found.together > 0 && found.multiple.is_none() {
             let note = match label {
                 Some(Label::Hb) => {
                     format!("pairs of eigenvalues on the axis: {}", found.together / 2)
@@ -324,8 +530,10 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
         let kind = match label {
             Some(Label::Lp) => EquilibriumBifurcation::Fold,
             Some(Label::Hb) => EquilibriumBifurcation::Hopf,
-            Some(Label::Uz | Label::Ep) => return rough.placed(system.family, [0.0; 2]),
-            Some(Label::Bp) => {
+            Some(Label::Uz | Label::Ep) if found.leaves.is_none() => {
+                return rough.placed(system.family, [0.0; 2]);
+            }
+            Some(Label::Bp | Label::Ep) => {
                 let off = found.uncertainty.unwrap_or(f64::INFINITY);
                 return rough.placed(system.family, [off, 0.0]);
             }
@@ -360,6 +568,23 @@ struct Half {
     told: ControlFlow<()>,
     /// Why it ended; `None` where it did not begin.
     stopped: Option<Stop>,
+}
+
+impl Multiple {
+    /// What is said of it.
+    fn note(&self) -> String {
+        let begins = match self.begins.len() {
+            0 => "which other branches begin here is not known".to_owned(),
+            count => format!("branches that begin here: {count}"),
+        };
+        format!("{} eigenvalues are 0; {begins}", self.point.multiplicity())
+    }
+}
+
+/// The state and the coordinate.
+fn apart(place: &Vector) -> (Vector, f64) {
+    let last = place.len() - 1;
+    (place.rows(0, last).into_owned(), place[last])
 }
 
 /// Whether two points of (state, coordinate) are one.

@@ -5,7 +5,7 @@
 //! Chua 2001, Methods of qualitative theory in nonlinear dynamics, chapter 13); beside a saddle-node as T^(-2) (Strogatz 1994, section 8.4). Two pairs of orbits have to agree
 //! on the limit, by one law or the other; else nothing is said.
 
-use super::equilibria::EquilibriumBranches;
+use super::equilibria::{EquilibriumBranches, Reported};
 use super::{FREE, GeneralBranch, GeneralPoint};
 use crate::bifurcation::Label;
 use crate::bifurcation::equilibria::generic::FieldEquilibria;
@@ -171,9 +171,9 @@ impl Passage {
 /// The one fold of equilibria whose coordinate is within a limit.
 fn fold_within(branch: &GeneralBranch<'_>, limit: Uncertain) -> Option<Uncertain> {
     let mut folds: Vec<GeneralPoint> = Vec::new();
-    let found = EquilibriumBranches::new(branch).all(&mut |point, special| {
+    let found = EquilibriumBranches::new(branch).all(&mut |point, kind| {
         let within = (point.at[FREE] - limit.value).abs() <= limit.uncertainty;
-        if special && within && point.label == Some(Label::Lp) {
+        if kind == Reported::Special && within && point.label == Some(Label::Lp) {
             folds.push(point);
         }
         Continue(())

@@ -12,6 +12,7 @@ mod orbit_branch;
 mod orbit_curves;
 mod orbit_point;
 mod orbits;
+mod runaway;
 mod splits;
 
 pub use curves::equilibrium_curves;
@@ -43,6 +44,15 @@ const FREE: usize = 0;
 /// The equilibria that are known at some coordinates of the parameters.
 pub type KnownEquilibria<'a> = &'a (dyn Fn([f64; 2]) -> Result<Vec<Vector>> + Sync);
 
+/// The range of a variable in a box that branches of equilibria do not leave.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StateRange {
+    /// The least and the greatest value.
+    pub range: (f64, f64),
+    /// What is said of a branch that leaves it at either of these.
+    pub said: [String; 2],
+}
+
 /// Periodic orbits that can be found at values of the parameter that varies.
 #[derive(Clone, Copy)]
 pub struct FoundOrbits<'a> {
@@ -65,6 +75,8 @@ pub struct GeneralSystem<'a> {
     pub names: [&'a str; 2],
     /// Where branches of equilibria begin.
     pub equilibria: KnownEquilibria<'a>,
+    /// Where they end, for each variable; empty where nothing bounds them.
+    pub bounds: &'a [StateRange],
 }
 
 /// A branch that is asked for. All values of parameters are coordinates of the family.
@@ -172,6 +184,8 @@ pub struct GeneralPoint {
     pub angle_over_pi: Option<f64>,
     /// How branches of equilibria cross at a branch point.
     pub crossing: Option<BranchCrossing>,
+    /// At a branch point or Hopf point of equilibria, how many eigenvalues, or pairs, are on the imaginary axis together.
+    pub multiplicity: Option<usize>,
     /// Where the period grows without bound, whether that is at a saddle-node on the cycle.
     pub saddle_node: bool,
     /// To which side the bifurcation goes.
@@ -288,6 +302,7 @@ impl GeneralPoint {
             period: None,
             angle_over_pi: None,
             crossing: None,
+            multiplicity: None,
             saddle_node: false,
             criticality: None,
             coefficient: None,

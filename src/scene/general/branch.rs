@@ -150,6 +150,7 @@ impl<'s> GeneralBranchPlan<'s> {
             names: [name; 2],
             interchangeable: &[],
             equilibria: &|_| Ok(Vec::new()),
+            bounds: &[],
         };
         let unit = self.subject.unit_of_time();
         following::crosscheck(&system, (1, unit), one, method)
@@ -177,6 +178,7 @@ impl<'s> GeneralBranchPlan<'s> {
             |point: &GeneralPoint, sharp: bool| self.subject.within(&*family, point, sharp);
         let clusters = !self.subject.clusters().is_empty();
         let interchangeable = self.subject.interchangeable();
+        let bounds = self.subject.bounds();
         let mut branch = GeneralBranch {
             system: GeneralSystem {
                 family: &*family,
@@ -184,6 +186,7 @@ impl<'s> GeneralBranchPlan<'s> {
                 names: [name; 2],
                 interchangeable: &interchangeable,
                 equilibria: &equilibria_at,
+                bounds: &bounds,
             },
             range: self.free.ends(),
             beyond: self.free.beyond(),

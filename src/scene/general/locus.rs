@@ -234,6 +234,7 @@ impl<'s> GeneralLocusPlan<'s> {
             names,
             interchangeable: &[],
             equilibria: &|_| Ok(Vec::new()),
+            bounds: &[],
         };
         let unit = self.subject.unit_of_time();
         following::crosscheck(&system, (2, unit), one, method)
@@ -284,6 +285,7 @@ impl<'s> GeneralLocusPlan<'s> {
             }
         }
         let interchangeable = self.subject.interchangeable();
+        let bounds = self.subject.bounds();
         let curve = GeneralCurve {
             system: GeneralSystem {
                 family: &*family,
@@ -291,6 +293,7 @@ impl<'s> GeneralLocusPlan<'s> {
                 names,
                 interchangeable: &interchangeable,
                 equilibria: &equilibria,
+                bounds: &bounds,
             },
             kind: self.bifurcation,
             ranges: self.free.each_ref().map(Free::ends),

@@ -17,7 +17,7 @@ pub use text::TextSubject;
 
 use super::system::Described;
 use super::units::Quantity;
-use crate::bifurcation::general::GeneralPoint;
+use crate::bifurcation::general::{GeneralPoint, StateRange};
 use crate::error::Result;
 use crate::field::Vector;
 use crate::orbit::{ContinuationPoint, Coordinate, ParametrisedField, WithinCluster};
@@ -53,6 +53,11 @@ pub trait Subject: Described + Sync {
     /// # Errors
     /// Those of the search.
     fn equilibria(&self, values: &[(&str, f64)]) -> Result<Vec<Vector>>;
+
+    /// The box that branches of equilibria do not leave, in the units in which it is followed; empty where none was given.
+    fn bounds(&self) -> Vec<StateRange> {
+        Vec::new()
+    }
 
     /// An orbit at these values of parameters, where one was asked for; its coordinates are yet to be set.
     ///

@@ -46,6 +46,8 @@ pub struct GeneralRow {
     pub angle_over_pi: Option<f64>,
     /// How branches of equilibria cross at a branch point.
     pub crossing: Option<BranchCrossing>,
+    /// At a branch point or Hopf point of equilibria, how many eigenvalues, or pairs, are on the imaginary axis together.
+    pub multiplicity: Option<usize>,
     /// Where the period grows without bound, whether that is at a saddle-node on the cycle.
     pub saddle_node: bool,
     /// To which side a bifurcation goes.
@@ -109,6 +111,7 @@ impl GeneralRow {
             within: point.within.iter().map(|one| one.ln_abs.value).collect(),
             angle_over_pi: point.angle_over_pi,
             crossing: point.crossing,
+            multiplicity: point.multiplicity,
             saddle_node: point.saddle_node,
             criticality: point.criticality,
             coefficient: point.coefficient.map(|x| x / square),
@@ -224,6 +227,11 @@ impl GeneralRow {
             Column::new("coefficient_uncertainty", Number, |row: &Row| {
                 row.coefficient_uncertainty.into()
             }),
+            Column::new("multiplicity", Number, |row: &Row| {
+                let count = row.multiplicity;
+                count.map_or(CellValue::Number(None), CellValue::Count)
+            })
+            .not_in_table(),
         ]);
         columns
     }
@@ -268,6 +276,7 @@ impl GeneralRow {
             crossing: BranchCrossing::ALL
                 .into_iter()
                 .find(|crossing| crossing.name() == cell("name")),
+            multiplicity: cell("multiplicity").parse().ok(),
             saddle_node: cell("name") == SADDLE_NODE,
             criticality: sides
                 .into_iter()

@@ -1,13 +1,14 @@
 //! A system of one's own, to be continued in any of its parameters.
 
 use super::{RowKind, Subject};
-use crate::bifurcation::general::{GeneralPoint, GeneralSolution};
+use crate::bifurcation::general::{GeneralPoint, GeneralSolution, StateRange};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
 use crate::field::Vector;
 use crate::friction::positive;
 use crate::integrate::{AnyField, Choice, MotionUnits, Tolerances};
 use crate::model::TextSystem;
+use crate::number::Interval;
 use crate::orbit::{
     AlongArcs, ContinuationPoint, Coordinate, FoundOrbit, OrbitAccuracy, OverText,
     ParametrisedField, WithinCluster, find_from, ranges,
@@ -158,6 +159,24 @@ impl Subject for TextSubject {
         Ok(state
             .map(|state| self.units.inward(&Vector::from_vec(state.collect())))
             .collect())
+    }
+
+    fn bounds(&self) -> Vec<StateRange> {
+        let Some(SearchPlace::Within(ranges)) = &self.place else {
+            return Vec::new();
+        };
+        let states = self.model.system.states().iter();
+        let all = states.zip(ranges).zip(&self.units.sizes);
+        let bound = |((name, range), size): ((&&str, &Interval), &f64)| {
+            let said = |x: f64, side: &str| {
+                format!("the branch leaves the box at {name} = {x}, its {side} bound")
+            };
+            StateRange {
+                range: (range.lo() / size, range.hi() / size),
+                said: [said(range.lo(), "lower"), said(range.hi(), "upper")],
+            }
+        };
+        all.map(bound).collect()
     }
 
     fn orbit(&self, values: &[(&str, f64)]) -> Result<Option<ContinuationPoint>> {
