@@ -4,6 +4,7 @@ use super::certain::certain;
 use super::continuation_point::{ContinuationPoint, TangentVector};
 use super::correct::{Condition, Corrector, Goal, Regular};
 use super::linear::Linear;
+use super::shooting_nodes::ShootingNodes;
 use super::spread::Spread;
 use super::test_function::TestFunction;
 use crate::continuation::{self, Continuation, CurveStep, SolutionCurve, StepControl, Stop};
@@ -73,8 +74,11 @@ const STRETCH: f64 = 2.0;
 const LONGER: f64 = 1.8;
 /// By how much the way of a variable may grow or shrink in a step.
 const LARGER: f64 = 2.5;
-/// What a relative error of the predicted period counts beside a correction.
-const LATE: f64 = 2.0;
+/// From where on the period is looked at half way too: what it is off its prediction by, in parts of its predicted change and of itself. And
+/// what it may be off there from a smooth change, in parts of what a jump would make.
+const AHEAD: f64 = 0.3;
+const LATE: f64 = 0.005;
+const OFF_SMOOTH: f64 = 0.6;
 /// A slope along a parameter that is small enough where it has no condition of its own.
 const FLAT: f64 = 1e-3;
 
@@ -237,12 +241,20 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
         if !here.site.shooting.is_like(&next.site.shooting, LARGER) {
             return Err(not_near("a step to an orbit of about the same shape"));
         }
-        // Another sheet of a branch that winds may be near by everything but its period.
-        let late = (predicted.shooting.period() / to - 1.0).abs();
-        let first = next.first.max(LATE * late);
-        if first > FAR_OFF {
+        if next.first > FAR_OFF {
             return Err(not_near("a step whose end is near the predicted one"));
         }
+        // Another sheet of a branch that winds may be near by everything but its period.
+        let expected = predicted.shooting.period();
+        let (change, late) = (expected - period, to - expected);
+        if late.abs() > AHEAD * change.abs() + LATE * period.abs() {
+            let middle = self.period_at(here, direction, 0.5 * distance)?;
+            let smooth = period + 0.5 * change + 0.25 * late;
+            if (middle - smooth).abs() > OFF_SMOOTH * 0.25 * late.abs() {
+                return Err(not_near("a step along which the period changes smoothly"));
+            }
+        }
+        let first = next.first;
         let direction = self
             .settings
             .direction(&next, direction)
@@ -360,6 +372,19 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
 }
 
 impl OrbitCurve<'_, '_> {
+    /// The period of the orbit at a distance into a direction.
+    fn period_at(
+        &mut self,
+        here: &Regular,
+        direction: &TangentVector,
+        distance: f64,
+    ) -> Result<f64> {
+        let predicted = here.site.moved(direction, distance);
+        let conditions = self.settings.and(Condition::Plane(direction, &predicted));
+        let found = self.corrected(here, predicted.clone(), &conditions)?;
+        Ok(found.site.shooting.period())
+    }
+
     /// The orbit near a guess that meets the conditions.
     fn corrected(
         &mut self,
@@ -393,18 +418,16 @@ impl OrbitCurve<'_, '_> {
 
     /// The orbit with its arcs cut anew.
     fn cut(&mut self, DirectedPoint { here, direction }: &DirectedPoint) -> Option<DirectedPoint> {
-        let site = &here.site;
-        let old = (site, direction);
-        let field = self.corrector.family.field(site.at);
+        let old = &here.site;
+        let field = self.corrector.family.field(old.at);
         let spread = self.spread();
-        let shooting = site
+        let (shooting, begin) = old
             .shooting
             .spread(&mut self.corrector.tracer, &field, spread)
             .ok()?;
-        drop(field);
         let mut site = ContinuationPoint {
             shooting,
-            at: site.at,
+            at: old.at,
         };
         let mut linear = self.corrector.linear(&site)?;
         for _ in 0..SPLITS {
@@ -412,19 +435,64 @@ impl OrbitCurve<'_, '_> {
                 break;
             }
             let parts = linear.parts(GROWTH);
-            let field = self.corrector.family.field(site.at);
             let tracer = &mut self.corrector.tracer;
             site.shooting = site.shooting.split(tracer, &field, &parts).ok()?;
-            drop(field);
             linear = self.corrector.linear(&site)?;
         }
+        drop(field);
+        let (node, moved) = self.carried(old, direction, (&site.shooting, begin))?;
         let scale = self.corrector.family.scale(site.at);
         let (_, along) = linear.solutions(&self.settings.free, scale)?;
         let first = most_moved(&along);
+        let count = site.shooting.nodes.len();
         site.shooting = site.shooting.beginning_at(first);
-        self.arrived(site, linear.beginning_at(first), |site, new| {
-            alike(old, (site, new))
+        let node = (node + count - first) % count;
+        let parameters = direction.parameters;
+        self.arrived(site, linear.beginning_at(first), |_, new| {
+            moved.dot(&new.nodes[node]) + product(&parameters, &new.parameters)
         })
+    }
+
+    /// What a direction displaces the next one of new nodes by after the node that it displaces most, across the flow; and which that is.
+    /// The first of the new nodes is so long after the first of the old ones.
+    fn carried(
+        &mut self,
+        old: &ContinuationPoint,
+        direction: &TangentVector,
+        (new, begin): (&ShootingNodes, f64),
+    ) -> Option<(usize, Vector)> {
+        let most = most_moved(std::slice::from_ref(direction));
+        let (period, durations) = (new.period(), &old.shooting.durations);
+        let time = durations[..most].iter().sum::<f64>() - begin;
+        let mut later = Vec::with_capacity(new.nodes.len());
+        let mut at = 0.0;
+        for duration in &new.durations {
+            // From the old node on, once around.
+            later.push(((at - time) / period).rem_euclid(1.0) * period);
+            at += duration;
+        }
+        let next = (0..later.len()).min_by(|&a, &b| later[a].abs().total_cmp(&later[b].abs()))?;
+        let family = self.corrector.family;
+        let field = family.field(old.at);
+        let mut moved = direction.nodes[most].clone();
+        if later[next] != 0.0 {
+            let free = family.plane();
+            let mut arcs = self.corrector.tracer.arcs(&field, &free).ok()?;
+            let arc = arcs.arc(&old.shooting.nodes[most], later[next]).ok()?;
+            moved = &arc.tangent * moved;
+            let scale = family.scale(old.at);
+            if arc.parameters.ncols() == scale.len() {
+                for (i, (scale, change)) in scale.iter().zip(direction.parameters).enumerate() {
+                    moved.axpy(scale * change, &arc.parameters.column(i), 1.0);
+                }
+            }
+        }
+        let node = &new.nodes[next];
+        let flow = field.f(node);
+        let normal = family.normal(node, flow.clone());
+        let along = normal.dot(&moved) / normal.dot(&flow);
+        moved.axpy(-along, &flow, 1.0);
+        Some((next, moved))
     }
 
     /// At an orbit that has other nodes than those before, going on in the direction whose product with the one so far is positive.
@@ -449,24 +517,6 @@ impl OrbitCurve<'_, '_> {
 
 fn product(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// The product of two tangent vectors of one orbit with other nodes: of what does not depend on these, and of the nodes that both
-/// have. Where the interfaces come near each other, ln D alone may change.
-fn alike(
-    (old, before): (&ContinuationPoint, &TangentVector),
-    (new, after): (&ContinuationPoint, &TangentVector),
-) -> f64 {
-    let nodes = old.shooting.nodes.iter().zip(&before.nodes);
-    let of_nodes = |(node, moved): (&Vector, &Vector)| {
-        let mut others = new.shooting.nodes.iter();
-        let same = others.position(|other| other == node);
-        same.map_or(0.0, |same| moved.dot(&after.nodes[same]))
-    };
-    let common: f64 = nodes.map(of_nodes).sum();
-    let afar =
-        [(old, before), (new, after)].map(|(at, tangent)| tangent.seen_from_afar(&at.shooting));
-    common / old.shooting.nodes.len() as f64 + product(&afar[0], &afar[1])
 }
 
 fn no_nodes() -> Stop {

@@ -12,6 +12,8 @@ use crate::number::eigenvalues;
 
 /// The least and the largest number of nodes.
 const NODES: (usize, usize) = (12, 256);
+/// Where the steps are so long that fewer nodes have a place, these are spread evenly in time.
+const FEWEST: usize = 4;
 /// How long arcs are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Spread {
@@ -92,7 +94,7 @@ impl Extents {
 }
 
 impl ShootingNodes {
-    /// The same orbit with its nodes spread anew.
+    /// The same orbit with its nodes spread anew, and the time from the first of the old ones to the first of the new.
     ///
     /// # Errors
     /// Those of the flow.
@@ -101,7 +103,7 @@ impl ShootingNodes {
         tracer: &mut Tracer,
         field: &AnyField<'_>,
         spread: Spread,
-    ) -> Result<Self> {
+    ) -> Result<(Self, f64)> {
         let steps = self.traced(tracer, field)?;
         let period = self.period();
         let extents = Extents::of(steps.iter().map(|step| &step.from), period);
@@ -147,10 +149,17 @@ impl ShootingNodes {
                 times.push(step.begin);
             }
         }
-        let again = times.first().map(|first| first + period);
-        let ends = times.iter().copied().skip(1).chain(again);
+        if nodes.len() < FEWEST {
+            let whole = ShootingNodes {
+                nodes: self.nodes[..1].to_vec(),
+                durations: vec![period],
+            };
+            return Ok((whole.split(tracer, field, &[NODES.0])?, 0.0));
+        }
+        let begin = times[0];
+        let ends = times.iter().copied().skip(1).chain([begin + period]);
         let durations = times.iter().zip(ends).map(|(from, to)| to - from).collect();
-        Ok(ShootingNodes { nodes, durations })
+        Ok((ShootingNodes { nodes, durations }, begin))
     }
 
     /// Whether the other orbit, with as many nodes, has about the same shape: no variable moves farther or less far by this factor, and the nodes
