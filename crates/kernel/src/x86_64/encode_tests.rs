@@ -198,18 +198,25 @@ fn disassembled(bytes: &[u8]) -> Option<Vec<String>> {
     let file = std::env::temp_dir().join(name);
     std::fs::write(&file, bytes).expect("a file for a moment");
     let run = Command::new("objdump")
-        .args(["--disassemble-all", "--target=binary", "--no-show-raw-insn"])
-        .args(["--architecture=i386:x86-64", "--disassembler-options=intel"])
+        .args([
+            "-D",
+            "-b",
+            "binary",
+            "-m",
+            "i386:x86-64",
+            "-M",
+            "intel",
+            "-w",
+        ])
         .arg(&file)
         .output();
     std::fs::remove_file(&file).expect("its end");
     let text = String::from_utf8(run.ok()?.stdout).expect("UTF-8");
+    // The place, the bytes, and the instruction.
     let lines = text.lines().filter_map(|line| {
-        let (place, instruction) = line.split_once(":\t")?;
-        let place = place.trim();
-        let is_place = !place.is_empty() && place.bytes().all(|c| c.is_ascii_hexdigit());
+        let instruction = line.split('\t').nth(2)?;
         let code = instruction.split('#').next().unwrap_or(instruction);
-        is_place.then(|| code.split_whitespace().collect::<Vec<_>>().join(" "))
+        Some(code.split_whitespace().collect::<Vec<_>>().join(" "))
     });
     Some(lines.collect())
 }

@@ -9,9 +9,8 @@ use super::uses::{NEVER, Uses};
 use crate::operations::{Array, Place, Value, Width};
 use std::collections::HashMap;
 
-/// Bytes of a double, and of a slot of the stack: one for any width.
+/// Bytes of a double.
 const DOUBLE: usize = 8;
-const SLOT: usize = 32;
 const REGISTERS: usize = 16;
 /// A value that is needed again within so many operations is loaded into a register instead of being read from memory twice.
 const SOON: u32 = 24;
@@ -41,10 +40,12 @@ pub struct Registers {
     pinned: u16,
     /// The values whose home is in the results, by each double of it.
     in_results: HashMap<usize, Vec<Value>>,
-    free_slots: Vec<usize>,
-    /// The slots that are free once the operation at hand has read them.
-    left_slots: Vec<usize>,
-    slots: usize,
+    /// Places on the stack that are free, in doubles, by the width of what has been there.
+    free_slots: [Vec<usize>; 3],
+    /// Those that are free once the operation at hand has read them.
+    left_slots: [Vec<usize>; 3],
+    /// The doubles of stack that are taken.
+    frame: usize,
     now: u32,
 }
 
@@ -59,16 +60,16 @@ impl Registers {
             widths,
             pinned: 0,
             in_results: HashMap::new(),
-            free_slots: Vec::new(),
-            left_slots: Vec::new(),
-            slots: 0,
+            free_slots: Default::default(),
+            left_slots: Default::default(),
+            frame: 0,
             now: 0,
         }
     }
 
     /// The bytes of stack that are taken.
     pub fn frame(&self) -> usize {
-        self.slots * SLOT
+        (self.frame * DOUBLE).next_multiple_of(32)
     }
 
     /// The width of a value.
@@ -80,7 +81,9 @@ impl Registers {
     pub fn begin(&mut self, at: usize) {
         self.now = at as u32;
         self.pinned = 0;
-        self.free_slots.append(&mut self.left_slots);
+        for (free, left) in self.free_slots.iter_mut().zip(&mut self.left_slots) {
+            free.append(left);
+        }
     }
 
     pub fn pin(&mut self, register: Register) {
@@ -138,7 +141,7 @@ impl Registers {
                 };
                 (pointer, place.offset * DOUBLE)
             }
-            Home::Slot(slot) => (Pointer::Rsp, slot * SLOT),
+            Home::Slot(slot) => (Pointer::Rsp, slot * DOUBLE),
             Home::Zero | Home::Nowhere => return None,
         };
         // Longer arrays are refused before.
@@ -191,13 +194,16 @@ impl Registers {
         let at = value.index();
         self.register[at] = None;
         if self.homes[at] == Home::Nowhere && self.uses.next(value) != NEVER {
-            let slot = self.free_slots.pop().unwrap_or_else(|| {
-                self.slots += 1;
-                self.slots - 1
+            let width = self.widths[at];
+            let slot = self.free_slots[width as usize].pop();
+            let slot = slot.unwrap_or_else(|| {
+                let slot = self.frame.next_multiple_of(width.lanes());
+                self.frame = slot + width.lanes();
+                slot
             });
             self.homes[at] = Home::Slot(slot);
-            let to = Operand::Memory(Pointer::Rsp, (slot * SLOT) as i32);
-            self.encoder.store(self.widths[at], to, register);
+            let to = Operand::Memory(Pointer::Rsp, (slot * DOUBLE) as i32);
+            self.encoder.store(width, to, register);
         }
     }
 
@@ -254,7 +260,7 @@ impl Registers {
     fn leave_home(&mut self, value: Value) {
         let home = std::mem::replace(&mut self.homes[value.index()], Home::Nowhere);
         if let Home::Slot(slot) = home {
-            self.left_slots.push(slot);
+            self.left_slots[self.widths[value.index()] as usize].push(slot);
         }
     }
 

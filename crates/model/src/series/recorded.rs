@@ -1,11 +1,15 @@
 //! Solutions that are computed by a recorded formula: references, tangents and Taylor maps of any [`Equations`], and all solutions
 //! of [`Expressions`].
 
+use super::compiled::{self, BothWays};
 use super::cubic::Jet3;
+#[cfg(target_arch = "x86_64")]
+use super::element::Element;
 use super::equations::Equations;
 use super::interpreted::{Interpreted, RecordFormula, Trajectory, Transported};
 use super::linearised::Linearised;
 use super::program::Program;
+use super::recent::Formulas;
 use super::trace::{Graph, Traced};
 use super::{
     Accuracy, Derivatives, Expansion, MAX_ORDER, REFERENCE_ORDER, Solution, Tangent, TaylorMap,
@@ -14,6 +18,7 @@ use super::{
 use super::{Four, Pair, avx2};
 use crate::expression::Expressions;
 use crate::number::{DoubleDouble, Real};
+use std::cell::OnceCell;
 use std::ops::{Deref, DerefMut};
 
 /// Coefficients that there is room for.
@@ -242,6 +247,54 @@ impl<'a, const N: usize> ByRecording<'a, N> for RecordedExpressions<'a, N> {
     }
 }
 
+/// The formulas at a state, in one lane and, where they have two parts that are alike, in two: to be run in loops and compiled, for tests.
+pub fn both_ways(
+    rates: &Expressions,
+    parameters: &[f64],
+    (state, free): (&[f64], Option<&[usize]>),
+) -> Vec<Box<dyn BothWays>> {
+    let recording = Recording::of_expressions((rates, None), state.len(), parameters, free);
+    let program = (recording.record)(state);
+    let mut all = Vec::new();
+    all.extend(compiled::both_ways(&program, ROOM, (state.to_vec(), 0.0)));
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = avx2()
+        && let Some(program) = program.in_two_lanes()
+    {
+        let any = Pair::new(simd, [0.0; 2]);
+        let mut lanes = vec![any; program.variables()];
+        for (&(row, lane), &x) in program.places.iter().zip(state) {
+            lanes[row] = if lane == 0 {
+                any.like(x)
+            } else {
+                lanes[row].with_lane(lane, x)
+            };
+        }
+        all.extend(compiled::both_ways(&program, ROOM, (lanes, any)));
+    }
+    all
+}
+
+/// The series of the derivatives of the formulas' solution at a state, in its components and in the parameters of these places, in loops and
+/// compiled, for tests; `None` where they are not compiled.
+pub fn columns_both_ways(
+    rates: &Expressions,
+    parameters: &[f64],
+    (state, free): (&[f64], &[usize]),
+    (order, unit): (usize, f64),
+) -> Option<[Vec<f64>; 2]> {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = avx2() {
+        let n = state.len();
+        let recording = Recording::of_expressions((rates, None), n, parameters, Some(free));
+        let program = (recording.record)(state);
+        let (of, any) = ((&program, free.len()), Four::new(simd, [0.0; 4]));
+        return compiled::columns_both_ways(of, state, (order, unit), (ROOM, any));
+    }
+    let _ = (rates, parameters, state, free, order, unit);
+    None
+}
+
 impl<'a> Recording<'a> {
     /// As of [`ByRecording::recording`].
     fn of_expressions(
@@ -251,26 +304,38 @@ impl<'a> Recording<'a> {
         free: Option<&[usize]>,
     ) -> Self {
         let free = free.map(<[usize]>::to_vec);
-        let own_factors = rates.own_factors(variables, parameters);
+        let own_factors = OnceCell::new();
         Recording {
             slip_rates: slip_rates.map_or(0, Expressions::count),
             symmetric: false,
             variables,
             free: free.as_ref().map_or(0, Vec::len),
             record: Box::new(move |x| {
-                let graph = Graph::default();
-                let place = |(i, &value): (usize, &f64)| graph.variable(i, value);
-                let x: Vec<_> = x.iter().enumerate().map(place).collect();
-                let beside = |(q, &value): (usize, &f64)| graph.variable(variables + q, value);
-                let p: Vec<_> = parameters.iter().enumerate().map(beside).collect();
-                let rates = rates.evaluate(&x, &p);
-                // The same nodes as of the rates, as far as these have them.
-                let slip_rates = slip_rates.map_or_else(Vec::new, |v| v.evaluate(&x, &p));
-                let slip_rates: Vec<_> = slip_rates.into_iter().map(Some).collect();
-                let all = (&rates[..], &slip_rates[..]);
-                let mut program = assemble(&graph, parameters, all, free.as_deref());
-                program.own_factors.clone_from(&own_factors);
-                program
+                let formulas = Formulas {
+                    rates,
+                    slip_rates,
+                    variables,
+                    parameters,
+                    free: free.as_deref(),
+                };
+                formulas.program(|| {
+                    let graph = Graph::default();
+                    let place = |(i, &value): (usize, &f64)| graph.variable(i, value);
+                    let x: Vec<_> = x.iter().enumerate().map(place).collect();
+                    let beside = |(q, &value): (usize, &f64)| graph.variable(variables + q, value);
+                    let p: Vec<_> = parameters.iter().enumerate().map(beside).collect();
+                    let made = rates.evaluate(&x, &p);
+                    // The same nodes as of the rates, as far as these have them.
+                    let slip_rates = slip_rates.map_or_else(Vec::new, |v| v.evaluate(&x, &p));
+                    let slip_rates: Vec<_> = slip_rates.into_iter().map(Some).collect();
+                    let all = (&made[..], &slip_rates[..]);
+                    let mut program = assemble(&graph, parameters, all, free.as_deref());
+                    let factors = || rates.own_factors(variables, parameters);
+                    program
+                        .own_factors
+                        .clone_from(own_factors.get_or_init(factors));
+                    program
+                })
             }),
         }
     }
