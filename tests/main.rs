@@ -73,6 +73,7 @@ mod ivp;
 mod ivp_events;
 mod ivp_solutions;
 #[cfg(target_arch = "x86_64")]
+mod kernels;
 mod lanes;
 mod law_bifurcations;
 mod law_parameters;

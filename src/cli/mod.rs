@@ -39,7 +39,7 @@ pub use catalogue::{OptionInfo, OptionKind, commands, options};
 pub use report::sundials;
 
 use crate::error::Error;
-use crate::integrate::{VECTORS, allowed_vectors, used_vectors};
+use crate::integrate::{VECTORS, allowed_compiling, allowed_vectors, used_vectors};
 use crate::scene;
 use call::Call;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -193,6 +193,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 
 fn run_line(command: &CliCommand, call: &Call) -> Result<Ending, Error> {
     allowed_vectors()?;
+    allowed_compiling()?;
     match command {
         CliCommand::Compute(command) => compute(command, call),
         CliCommand::Run(options) => run::run(options, call),
@@ -254,6 +255,7 @@ pub fn run_into(words: &[String], outlet: Arc<dyn Outlet>) -> Result<Ending, Err
     }
     let command = parsed(&call.words[1..])?;
     allowed_vectors()?;
+    allowed_compiling()?;
     compute(&command, &call)
 }
 

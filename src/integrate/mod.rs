@@ -37,6 +37,8 @@ use crate::error::Result;
 use crate::field::{Jacobian, State, VectorField};
 use crate::number::DoubleDouble;
 use crate::series::Expansion;
+#[doc(hidden)]
+pub use crate::series::{COMPILE, allowed_compiling};
 pub use crate::series::{VECTORS, Vectors, allowed_vectors, used_vectors};
 pub(crate) use singularity::step_underflow;
 use std::ops::Deref;

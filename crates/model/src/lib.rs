@@ -20,6 +20,7 @@ pub mod internals {
     pub use crate::series::element::Element;
     #[cfg(target_arch = "x86_64")]
     pub use crate::series::lanes::{Eight, Four, Pair};
+    pub use crate::series::{BothWays, both_ways, columns_both_ways};
 }
 
 pub(crate) use twinslip_error as error;

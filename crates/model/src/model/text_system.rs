@@ -4,9 +4,7 @@ use crate::error::{Error, Result};
 use crate::expression::Expressions;
 use crate::field::{Analytic, ExactField, Jacobian, Parametrised, State, VectorField};
 use crate::number::{DoubleDouble, Interval, Jet, Real};
-use crate::series::{
-    ByRecording, Jet3, KeptProgram, RecordedExpressions, Solution, Tangent, TaylorMap,
-};
+use crate::series::{ByRecording, Jet3, RecordedExpressions, Solution, Tangent, TaylorMap};
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex};
@@ -243,10 +241,7 @@ fn kept(name: &str) -> &'static str {
 
 /// A [`TextSystem`] of N variables.
 #[derive(Debug, Clone)]
-pub struct TextField<'a, const N: usize> {
-    system: Cow<'a, TextSystem>,
-    program: KeptProgram,
-}
+pub struct TextField<'a, const N: usize>(Cow<'a, TextSystem>);
 
 impl<'a, const N: usize> TextField<'a, N> {
     /// The field of a system that stays with its owner, or of one's own.
@@ -259,35 +254,29 @@ impl<'a, const N: usize> TextField<'a, N> {
             let must = format!("{N}, as many as the field is asked for");
             return Err(Error::parameter("the number of states", count, must));
         }
-        Ok(TextField {
-            system,
-            program: KeptProgram::default(),
-        })
+        Ok(TextField(system))
     }
 
     fn recorded(&self) -> RecordedExpressions<'_, N> {
         RecordedExpressions {
-            rates: &self.system.rates,
-            slip_rates: self.system.slip_rates.as_deref(),
-            parameters: &self.system.parameters,
-            kept: &self.program,
+            rates: &self.0.rates,
+            slip_rates: self.0.slip_rates.as_deref(),
+            parameters: &self.0.parameters,
         }
     }
 }
 
 impl<const N: usize> VectorField<N> for TextField<'_, N> {
     fn f(&self, y: &State<N>) -> State<N> {
-        State::from_column_slice(&self.system.rates(y.as_slice()))
+        State::from_column_slice(&self.0.rates(y.as_slice()))
     }
 
     fn jacobian(&self, y: &State<N>) -> Jacobian<N> {
-        Jacobian::from_row_slice(&self.system.jacobian(y.as_slice()))
+        Jacobian::from_row_slice(&self.0.jacobian(y.as_slice()))
     }
 
     fn second_derivative(&self, y: &State<N>, u: &State<N>, v: &State<N>) -> State<N> {
-        let made = self
-            .system
-            .second_derivative([y, u, v].map(|x| x.as_slice()));
+        let made = self.0.second_derivative([y, u, v].map(|x| x.as_slice()));
         State::from_column_slice(&made)
     }
 
@@ -307,12 +296,12 @@ impl<const N: usize> VectorField<N> for TextField<'_, N> {
         let matrix = |all: Vec<f64>| Jacobian::from_row_slice(&all);
         Some(ExactField {
             f: [
-                state(doubles(self.system.rates(&x))),
-                state(off(self.system.rates(&within))),
+                state(doubles(self.0.rates(&x))),
+                state(off(self.0.rates(&within))),
             ],
             jacobian: [
-                matrix(doubles(self.system.jacobian(&x))),
-                matrix(off(self.system.jacobian(&within))),
+                matrix(doubles(self.0.jacobian(&x))),
+                matrix(off(self.0.jacobian(&within))),
             ],
         })
     }
@@ -320,7 +309,7 @@ impl<const N: usize> VectorField<N> for TextField<'_, N> {
     fn own_factors(&self) -> [bool; N] {
         let TextSystem {
             rates, parameters, ..
-        } = &*self.system;
+        } = &*self.0;
         let all = rates.own_factors(N, parameters);
         std::array::from_fn(|i| all[i])
     }
@@ -336,15 +325,15 @@ impl<const N: usize> VectorField<N> for TextField<'_, N> {
 
 impl<const N: usize> Parametrised<N> for TextField<'_, N> {
     fn names(&self) -> &[&'static str] {
-        &self.system.names
+        &self.0.names
     }
 
     fn parameter_derivative(&self, y: &State<N>, place: usize) -> State<N> {
-        State::from_column_slice(&self.system.parameter_derivative(y.as_slice(), place))
+        State::from_column_slice(&self.0.parameter_derivative(y.as_slice(), place))
     }
 
     fn parameter_jacobian(&self, y: &State<N>, place: usize) -> Jacobian<N> {
-        let column = |j: usize| self.system.mixed_derivative(y.as_slice(), j, place);
+        let column = |j: usize| self.0.mixed_derivative(y.as_slice(), j, place);
         let columns: Vec<f64> = (0..N).flat_map(column).collect();
         Jacobian::from_column_slice(&columns)
     }

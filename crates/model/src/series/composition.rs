@@ -68,6 +68,11 @@ impl<T: Element> Composition<T> {
         self.coefficients = ratio_coefficients(ratio, first, self.room);
     }
 
+    /// The coefficients of the function.
+    pub fn coefficients(&self) -> &[T] {
+        &self.coefficients
+    }
+
     /// The next coefficient, from those of the series before the newest and that; orders follow each other.
     #[inline(always)]
     pub fn next(&mut self, older: &[T], newest: T) -> T {

@@ -4,6 +4,7 @@ use crate::number::{Balance, DoubleDouble, Real};
 use pulp::NullaryFnOnce;
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
+use twinslip_kernel::{Kernel, Width};
 
 /// A coefficient of a series.
 ///
@@ -142,6 +143,16 @@ pub trait Element:
     /// Whether a formula and the sums of products are functions of their own, called: of long elements they take minutes to
     /// compile otherwise, and run no faster.
     const CALLED: bool = false;
+    /// The vectors that kernels make of it, where there are kernels of it.
+    const WIDTH: Option<Width> = None;
+    /// Carries out a kernel of such vectors on these results, given these numbers and coefficients.
+    fn run_kernel(_: &Kernel, _results: &mut [Self], _numbers: &[Self], _coefficients: &[f64]) {
+        unreachable!("no kernels of these");
+    }
+    /// Elements that are doubles.
+    fn as_doubles(_all: &[Self]) -> Option<&[f64]> {
+        None
+    }
     /// The number in the first lane.
     fn first(self) -> f64;
     /// The number in a lane.
@@ -217,6 +228,15 @@ impl Element for f64 {
     type Two = ();
     const LANES: usize = 1;
     const UNROLLED: bool = true;
+    const WIDTH: Option<Width> = Some(Width::One);
+    #[inline(always)]
+    fn run_kernel(kernel: &Kernel, results: &mut [f64], numbers: &[f64], coefficients: &[f64]) {
+        kernel.run(results, numbers, coefficients);
+    }
+    #[inline(always)]
+    fn as_doubles(all: &[f64]) -> Option<&[f64]> {
+        Some(all)
+    }
     #[inline(always)]
     fn lane(self, _: usize) -> f64 {
         self

@@ -5,6 +5,7 @@
 
 mod advance;
 
+use super::compiled::Compiled;
 use super::cubic::Jet3;
 use super::element::{Element, rough_exp2, rough_log2};
 use super::linearised::longest_of_columns;
@@ -65,6 +66,8 @@ pub struct Interpreted<'a, T: Element> {
     record: RecordFormula<'a>,
     program: Program,
     rows: ProgramRows<T>,
+    /// The rows' formula as machine code; none where it is recorded anew at every step.
+    compiled: Option<Compiled<T>>,
     /// For the first coefficients elsewhere than where the series begin.
     probe: ProgramRows<T>,
     /// Whether these are the ones at the state reached.
@@ -126,8 +129,11 @@ impl<'a, T: Element> Interpreted<'a, T> {
             x: zeros.clone(),
             lost: zeros.clone(),
         };
+        let rows = ProgramRows::new(&program, room, any);
+        let compiled = (!program.branches).then(|| Compiled::of(&rows, any));
         Interpreted {
-            rows: ProgramRows::new(&program, room, any),
+            compiled: compiled.flatten(),
+            rows,
             probe: ProgramRows::new(&program, 1, any),
             probed: false,
             program,
@@ -224,11 +230,21 @@ impl<'a, T: Element> Interpreted<'a, T> {
         let powers = !self.program.bases.is_empty();
         for _ in 0..=SHORTER_UNITS {
             let (mut k, mut anew) = (0, powers);
+            let mut may_compile = true;
             while k < order {
                 if k == 0 {
                     self.rows.prepare();
                     self.rows.integrate(self.unit);
                 } else {
+                    if !anew && may_compile {
+                        // Once in a step: each time it asks counts as one.
+                        may_compile = false;
+                        if let Some(compiled) = &mut self.compiled
+                            && compiled.expand(&mut self.rows, order, self.unit)
+                        {
+                            break;
+                        }
+                    }
                     self.rows.level(k, self.unit);
                 }
                 k += 1;

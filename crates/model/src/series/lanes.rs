@@ -9,6 +9,7 @@ use pulp::x86::{V3, V4};
 use std::arch::x86_64::{__m128d, __m256d, __m512d, _CMP_LT_OQ};
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
+use twinslip_kernel::{Kernel, Width, doubles};
 
 /// Both interfaces under one stress, in one register.
 #[derive(Debug, Clone, Copy)]
@@ -30,6 +31,15 @@ pub struct Eight {
     lanes: __m512d,
     simd: V4,
 }
+
+doubles!(Pair {
+    lanes: __m128d,
+    simd: V3
+});
+doubles!(Four {
+    lanes: __m256d,
+    simd: V3
+});
 
 impl Pair {
     /// (x, x, y, y) of (x, y).
@@ -306,6 +316,7 @@ macro_rules! lanes {
         }
     };
     (@interfaces Pair) => {
+        lanes!(@kernels Two);
         type Two = Four;
         const SHARES: bool = true;
         #[inline(always)]
@@ -321,6 +332,17 @@ macro_rules! lanes {
         fn largest_over_interfaces(self) -> Self {
             let [x, y] = self.lanes();
             Element::max(self, Self::new(self.simd, [y, x]))
+        }
+    };
+    (@interfaces Four) => {
+        lanes!(@kernels Four);
+        lanes!(@interfaces Others);
+    };
+    (@kernels $width:ident) => {
+        const WIDTH: Option<Width> = Some(Width::$width);
+        #[inline(always)]
+        fn run_kernel(kernel: &Kernel, results: &mut [Self], numbers: &[Self], coefficients: &[f64]) {
+            kernel.run(results, numbers, coefficients);
         }
     };
     (@interfaces $other:ident) => {

@@ -33,17 +33,6 @@ impl<T: Element> Level<'_, T> {
         let first = |row: usize| self.first(row);
         let one_over = |x: T| self.any.like(1.0) / x;
         let zero = self.any.like(0.0);
-        match one.products {
-            Products::Nothing => {}
-            Products::One(_) => one.sums[0].clear(zero),
-            Products::Two(_) | Products::Shared(..) => match &mut one.shared {
-                Some(shared) => shared.clear(zero),
-                None => {
-                    one.sums[0].clear(zero);
-                    one.sums[1].clear(zero);
-                }
-            },
-        }
         match one.operation {
             Operation::Product(_, b) => {
                 one.counts = [first(b).scale(factor), first(one.operand.row)];
@@ -95,6 +84,23 @@ impl<T: Element> Level<'_, T> {
                 one.inverse = one_over(self.any.like(1.0) + first(steepness));
             }
             _ => {}
+        }
+    }
+
+    /// The sums of products before there are coefficients.
+    #[inline(always)]
+    pub fn clear_sums(&self, one: &mut PlacedInstruction<T>) {
+        let zero = self.any.like(0.0);
+        match one.products {
+            Products::Nothing => {}
+            Products::One(_) => one.sums[0].clear(zero),
+            Products::Two(_) | Products::Shared(..) => match &mut one.shared {
+                Some(shared) => shared.clear(zero),
+                None => {
+                    one.sums[0].clear(zero);
+                    one.sums[1].clear(zero);
+                }
+            },
         }
     }
 

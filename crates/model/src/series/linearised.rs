@@ -6,148 +6,13 @@
 //! tangent is known by that alone.
 
 use super::Accuracy;
+use super::column_series::{ColumnChunks, ExpandColumns, JacobianEntry};
+use super::compiled::CompiledColumns;
 use super::element::{Element, rough_exp2, rough_log2};
 use super::interpreted::{Interpreted, Trajectory};
 use super::program::{Program, Source};
-use super::program_rows::ProgramRows;
 use crate::number::DoubleDouble;
 use pulp::NullaryFnOnce;
-
-/// An entry of the Jacobian, or of the derivatives in parameters, that is not zero everywhere.
-#[derive(Debug, Clone, Copy)]
-struct JacobianEntry {
-    /// The rate, and what it is differentiated in.
-    place: (usize, usize),
-    series: Source,
-}
-
-/// The columns: `chunks` elements X for every variable, whose lanes are the N components of the start and then the parameters.
-struct ColumnChunks<X> {
-    variables: usize,
-    chunks: usize,
-    /// At the beginning of the next step.
-    x: Vec<X>,
-    /// The series, in the order of the powers.
-    series: Vec<X>,
-}
-
-impl<X: Element> ColumnChunks<X> {
-    fn new(variables: usize, directions: usize, room: usize, any: X) -> Self {
-        let chunks = directions.div_ceil(X::LANES);
-        let zero = any.like(0.0);
-        ColumnChunks {
-            variables,
-            chunks,
-            x: vec![zero; variables * chunks],
-            series: vec![zero; room * variables * chunks],
-        }
-    }
-
-    /// The identity, and zero in the parameters.
-    fn start(&mut self) {
-        let zero = self.x[0].like(0.0);
-        self.x.fill(zero);
-        for i in 0..self.variables {
-            let x = &mut self.x[i * self.chunks + i / X::LANES];
-            *x = x.with_lane(i % X::LANES, 1.0);
-        }
-    }
-
-    fn get(&self, i: usize, direction: usize) -> f64 {
-        self.x[i * self.chunks + direction / X::LANES].lane(direction % X::LANES)
-    }
-
-    /// The k-th coefficients.
-    #[inline(always)]
-    fn level(&self, k: usize) -> &[X] {
-        let width = self.variables * self.chunks;
-        &self.series[k * width..][..width]
-    }
-}
-
-/// The series of the columns from that of the entries.
-struct ExpandColumns<'a, T: Element, X> {
-    columns: &'a mut ColumnChunks<X>,
-    jacobian: &'a [JacobianEntry],
-    forcing: &'a [JacobianEntry],
-    rows: &'a ProgramRows<T>,
-    unit: f64,
-    order: usize,
-}
-
-impl<T: Element, X: Element> ExpandColumns<'_, T, X> {
-    #[inline(always)]
-    fn expand(self) {
-        let ColumnChunks {
-            variables,
-            chunks,
-            x,
-            series,
-        } = self.columns;
-        let (variables, chunks) = (*variables, *chunks);
-        let width = variables * chunks;
-        let any = x[0];
-        series[..width].copy_from_slice(x);
-        for k in 0..self.order {
-            let (known, rest) = series.split_at_mut((k + 1) * width);
-            let next = &mut rest[..width];
-            next.fill(any.like(0.0));
-            for entry in self.jacobian {
-                let (i, j) = entry.place;
-                let sums = &mut next[i * chunks..][..chunks];
-                match entry.series {
-                    Source::Number(a) => {
-                        let a = any.like_exact(a);
-                        for (c, sum) in sums.iter_mut().enumerate() {
-                            *sum = a.mul_add(known[k * width + j * chunks + c], *sum);
-                        }
-                    }
-                    Source::Row(row) => {
-                        let a = &self.rows.row(row)[..=k];
-                        for (c, sum) in sums.iter_mut().enumerate() {
-                            let column = &known[j * chunks + c..];
-                            *sum = *sum + product(a, column, width, any);
-                        }
-                    }
-                }
-            }
-            for entry in self.forcing {
-                let (i, parameter) = entry.place;
-                let lane = variables + parameter;
-                let x = self.rows.coefficient(entry.series, k);
-                let sum = &mut next[i * chunks + lane / X::LANES];
-                let one = any.like(0.0).with_lane(lane % X::LANES, 1.0);
-                *sum = one.mul_add(any.like_exact(x.to_exact()), *sum);
-            }
-            let share = any.like(self.unit) / any.like((k + 1) as f64);
-            for sum in next {
-                *sum = *sum * share;
-            }
-        }
-    }
-}
-
-/// sum of a_l b_(k-l) over l <= k, of a column whose coefficients stand `width` apart: in two sums, which do not wait for each
-/// other.
-#[inline(always)]
-fn product<T: Element, X: Element>(a: &[T], column: &[X], width: usize, any: X) -> X {
-    let k = a.len() - 1;
-    let (mut even, mut odd) = (any.like(0.0), any.like(0.0));
-    let mut l = 0;
-    while l < k {
-        even = any
-            .like_exact(a[l].to_exact())
-            .mul_add(column[(k - l) * width], even);
-        odd = any
-            .like_exact(a[l + 1].to_exact())
-            .mul_add(column[(k - l - 1) * width], odd);
-        l += 2;
-    }
-    if l == k {
-        even = any.like_exact(a[l].to_exact()).mul_add(column[0], even);
-    }
-    even + odd
-}
 
 /// The step, in units of the series and at most `most`, at which the last two terms of every column are below the tolerance,
 /// from the sizes of the columns' first two coefficients and of these last two.
@@ -184,6 +49,39 @@ pub fn longest_of_terms(order: usize, [before, last]: [f64; 2]) -> f64 {
     rough_exp2(before.min(last))
 }
 
+/// The entries of the Jacobian, and of the derivatives in parameters, that are not zero everywhere.
+pub(super) struct Entries {
+    pub jacobian: Vec<JacobianEntry>,
+    pub forcing: Vec<JacobianEntry>,
+}
+
+impl Entries {
+    /// Those of a program, which gives the Jacobian row by row at the end, and then for each rate its derivatives in so many parameters.
+    pub fn of(program: &Program, variables: usize, parameters: usize) -> Self {
+        let n = variables;
+        let from = program.outputs.len() - n * (n + parameters);
+        Entries {
+            jacobian: Self::of_matrix(program, from, (n, n)),
+            forcing: Self::of_matrix(program, from + n * n, (n, parameters)),
+        }
+    }
+
+    /// Of a matrix with so many rows and columns that stands there in the outputs.
+    fn of_matrix(
+        program: &Program,
+        from: usize,
+        (rows, columns): (usize, usize),
+    ) -> Vec<JacobianEntry> {
+        let all = program.outputs[from..][..rows * columns].iter().enumerate();
+        all.filter(|(_, series)| **series != Source::Number(DoubleDouble::ZERO))
+            .map(|(at, series)| JacobianEntry {
+                place: (at / columns, at % columns),
+                series: *series,
+            })
+            .collect()
+    }
+}
+
 /// A solution with its derivatives, in numbers T, the columns in the lanes of X.
 ///
 /// A step may err by `atol + rtol |x_i|` in x_i. In a column of derivatives it may err by `rtol` of the largest of its
@@ -191,6 +89,9 @@ pub fn longest_of_terms(order: usize, [before, last]: [f64; 2]) -> f64 {
 pub(super) struct Linearised<'a, T: Element, X> {
     solution: Interpreted<'a, T>,
     columns: ColumnChunks<X>,
+    /// What the linearised equations need of the program.
+    entries: Entries,
+    compiled: Option<CompiledColumns<X>>,
     parameters: usize,
     /// Whether the growth across a symmetric subspace is what the last variable grows by on its own.
     symmetric: bool,
@@ -208,29 +109,23 @@ impl<'a, T: Element, X: Element> Linearised<'a, T, X> {
         any: X,
     ) -> Self {
         let variables = solution.reached().len();
+        let columns = ColumnChunks::new(variables, variables + parameters, room, any);
+        let (program, rows) = solution.made();
+        let entries = Entries::of(program, variables, parameters);
+        let compiled = (!program.branches).then(|| {
+            let of = (&entries.jacobian[..], &entries.forcing[..]);
+            CompiledColumns::of(of, (variables, columns.chunks), rows.room(), any)
+        });
         Linearised {
-            columns: ColumnChunks::new(variables, variables + parameters, room, any),
+            columns,
+            entries,
+            compiled: compiled.flatten(),
             solution,
             parameters,
             symmetric,
             log_determinant: DoubleDouble::ZERO,
             log_transverse: DoubleDouble::ZERO,
         }
-    }
-
-    /// Entries that are not zero, of a matrix with so many columns that stands there in the outputs.
-    fn entries(
-        program: &Program,
-        from: usize,
-        (rows, columns): (usize, usize),
-    ) -> Vec<JacobianEntry> {
-        let all = program.outputs[from..][..rows * columns].iter().enumerate();
-        all.filter(|(_, series)| **series != Source::Number(DoubleDouble::ZERO))
-            .map(|(at, series)| JacobianEntry {
-                place: (at / columns, at % columns),
-                series: *series,
-            })
-            .collect()
     }
 
     /// The step of the columns, in units of the series and at most `most`.
@@ -282,19 +177,27 @@ impl<'a, T: Element, X: Element> Linearised<'a, T, X> {
         self.solution.stay_within(limit);
         self.solution.expand(order);
         let (program, rows) = self.solution.made();
-        let from = program.outputs.len() - n * (n + self.parameters);
-        let jacobian = Self::entries(program, from, (n, n));
-        let forcing = Self::entries(program, from + n * n, (n, self.parameters));
-        let unit = self.solution.unit();
-        ExpandColumns {
-            columns: &mut self.columns,
-            jacobian: &jacobian,
-            forcing: &forcing,
-            rows,
-            unit,
-            order,
+        if program.branches {
+            self.entries = Entries::of(program, n, self.parameters);
         }
-        .expand();
+        let unit = self.solution.unit();
+        let (columns, compiled) = (&mut self.columns, &mut self.compiled);
+        columns.begin();
+        let is_made = match compiled {
+            Some(compiled) => compiled.expand(&mut columns.series, rows, (order, unit)),
+            None => false,
+        };
+        if !is_made {
+            ExpandColumns {
+                columns,
+                jacobian: &self.entries.jacobian,
+                forcing: &self.entries.forcing,
+                rows,
+                unit,
+                order,
+            }
+            .call();
+        }
         let in_units = (limit.hi() / unit).abs();
         let most = f64::min(self.solution.longest(accuracy), in_units);
         let h = self.longest(accuracy, most);
@@ -304,7 +207,7 @@ impl<'a, T: Element, X: Element> Linearised<'a, T, X> {
         }
         let h = taken / unit;
         self.advance_columns(order, h);
-        for entry in jacobian {
+        for entry in &self.entries.jacobian {
             if entry.place.0 != entry.place.1 {
                 continue;
             }

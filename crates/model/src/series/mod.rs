@@ -12,7 +12,10 @@
 //! methods. Experimental Mathematics 14, 99-117.
 
 mod assembly;
+mod column_series;
 mod columns;
+mod compiled;
+mod compiling;
 mod composition;
 mod cubic;
 pub(crate) mod element;
@@ -37,6 +40,7 @@ mod products;
 mod program;
 mod program_rows;
 mod real;
+mod recent;
 mod recorded;
 mod recurrences;
 mod rounding;
@@ -51,6 +55,9 @@ mod vectors;
 use crate::number::DoubleDouble;
 use crate::number::polynomial::evaluate;
 pub(crate) use columns::{Along, JacobianTerm, VariationalEquations};
+#[doc(hidden)]
+pub use compiled::BothWays;
+pub use compiling::{Compiling, VARIABLE as COMPILE, allowed as allowed_compiling};
 pub use cubic::Jet3;
 pub(crate) use element::Element;
 pub use equations::Equations;
@@ -62,7 +69,9 @@ pub(crate) use handle::{Series, value};
 pub(crate) use lanes::{Eight, Four, Pair};
 pub(crate) use linearised::longest_of_terms;
 pub(crate) use plain::Both;
-pub(crate) use recorded::{ByRecording, KeptProgram, Recorded, RecordedExpressions};
+pub(crate) use recorded::{ByRecording, Recorded, RecordedExpressions};
+#[doc(hidden)]
+pub use recorded::{both_ways, columns_both_ways};
 pub(crate) use stepper::{ByFormula, Recurrences, Stepper};
 pub(crate) use tape::{Order, ROOM};
 pub use transport::TaylorMap;

@@ -31,7 +31,7 @@ pub(super) struct PlacedInstruction<T: Element> {
 }
 
 /// Rows of which products are needed.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Products {
     Nothing,
     One([usize; 2]),

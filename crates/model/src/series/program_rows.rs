@@ -25,9 +25,9 @@ pub(super) struct ProgramRows<T: Element> {
 
 /// The rate of a variable.
 #[derive(Debug, Clone, Copy)]
-struct Rate {
-    variable: usize,
-    of: Source,
+pub(super) struct Rate {
+    pub variable: usize,
+    pub of: Source,
 }
 
 impl Rate {
@@ -114,9 +114,46 @@ impl<T: Element> ProgramRows<T> {
         (level, &self.first, &mut self.later)
     }
 
+    /// The coefficients of all rows, one row after the other.
+    pub fn coefficients(&self) -> &[T] {
+        &self.coefficients
+    }
+
+    /// The same, to be changed.
+    #[inline(always)]
+    pub fn coefficients_mut(&mut self) -> &mut [T] {
+        &mut self.coefficients
+    }
+
+    /// How many variables there are, which have the first rows.
+    pub fn variables(&self) -> usize {
+        self.rates.len()
+    }
+
+    /// Coefficients that a row has room for.
+    pub fn room(&self) -> usize {
+        self.room
+    }
+
+    /// What is carried out at all orders but the first.
+    #[inline(always)]
+    pub fn later(&self) -> &[PlacedLater<T>] {
+        &self.later
+    }
+
+    /// The rates that are no sums.
+    pub fn rates_apart(&self) -> &[Rate] {
+        &self.rates_apart
+    }
+
+    /// 1/k
+    pub fn one_over(&self, k: usize) -> DoubleDouble {
+        self.inverses[k]
+    }
+
     /// What the k-th coefficient of a rate counts in the next one of its variable; the unit of time is a power of two.
     #[inline(always)]
-    fn share(&self, k: usize, unit: f64) -> DoubleDouble {
+    pub fn share(&self, k: usize, unit: f64) -> DoubleDouble {
         self.inverses[k + 1].times_power_of_two(unit)
     }
 
@@ -189,6 +226,13 @@ impl<T: Element> ProgramRows<T> {
         let share = self.share(k, unit);
         let (level, _, later) = self.order(k);
         let level = Level { share, ..level };
+        if k == 1 {
+            for one in later.iter_mut() {
+                if let PlacedLater::Other(one) = one {
+                    level.clear_sums(one);
+                }
+            }
+        }
         if level.phase == 0 {
             for one in later.iter_mut() {
                 if let PlacedLater::Other(one) = one {
@@ -298,18 +342,27 @@ impl<T: Element> Level<'_, T> {
         }
     }
 
+    /// The newest coefficient of the row of a term, of the lane that counts.
+    #[inline(always)]
+    fn newest_of(&self, term: &PlacedTerm<T>) -> T {
+        let x = self.newest(term.row);
+        match term.lane {
+            None => x,
+            Some(0) => self.any.like(x.lane(0)),
+            // Twins are two.
+            Some(_) => self.any.like(x.lane(T::LANES - 1)),
+        }
+    }
+
     #[inline(always)]
     fn sum(&mut self, sum: &PlacedSum<T>) {
-        let mut all = self.any.like(0.0);
-        for term in &sum.terms {
-            let x = self.newest(term.row);
-            let x = match term.lane {
-                None => x,
-                Some(0) => self.any.like(x.lane(0)),
-                // Twins are two.
-                Some(_) => self.any.like(x.lane(T::LANES - 1)),
-            };
-            all = x.mul_add(term.factor, all);
+        let mut terms = sum.terms.iter();
+        let mut all = match terms.next() {
+            Some(term) => self.newest_of(term) * term.factor,
+            None => self.any.like(0.0),
+        };
+        for term in terms {
+            all = self.newest_of(term).mul_add(term.factor, all);
         }
         self.put(sum.result, all);
         if let Some(variable) = sum.rate_of {

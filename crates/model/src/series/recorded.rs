@@ -1,11 +1,15 @@
 //! Solutions that are computed by a recorded formula: references, tangents and Taylor maps of any [`Equations`], and all solutions
 //! of [`Expressions`].
 
+use super::compiled::{self, BothWays};
 use super::cubic::Jet3;
+#[cfg(target_arch = "x86_64")]
+use super::element::Element;
 use super::equations::Equations;
 use super::interpreted::{Interpreted, RecordFormula, Trajectory, Transported};
 use super::linearised::Linearised;
 use super::program::Program;
+use super::recent::Formulas;
 use super::trace::{Graph, Traced};
 use super::{
     Accuracy, Derivatives, Expansion, MAX_ORDER, REFERENCE_ORDER, Solution, Tangent, TaylorMap,
@@ -14,8 +18,8 @@ use super::{
 use super::{Four, Pair, avx2};
 use crate::expression::Expressions;
 use crate::number::{DoubleDouble, Real};
+use std::cell::OnceCell;
 use std::ops::{Deref, DerefMut};
-use std::sync::OnceLock;
 
 /// Coefficients that there is room for.
 const ROOM: usize = MAX_ORDER + 1;
@@ -33,21 +37,9 @@ pub struct Recorded<S, const N: usize, const P: usize> {
     pub symmetric: bool,
 }
 
-/// The program of a formula without derivatives, and the same in two lanes where it has them: made once for all solutions of a field.
-#[derive(Debug, Clone, Default)]
-pub struct KeptProgram(OnceLock<Recordings>);
-
-#[derive(Debug, Clone)]
-struct Recordings {
-    single: Program,
-    #[cfg(target_arch = "x86_64")]
-    in_lanes: Option<Program>,
-}
-
 /// A recorded formula: its variables, the slip rates among its outputs, the parameters in which it has derivatives.
 pub struct Recording<'a> {
     record: RecordFormula<'a>,
-    kept: Option<&'a KeptProgram>,
     variables: usize,
     slip_rates: usize,
     /// In how many parameters it has derivatives.
@@ -61,32 +53,18 @@ impl<'a> Recording<'a> {
         (self.variables, self.slip_rates)
     }
 
-    /// The programs, recorded here or kept from before.
-    fn recordings(&self) -> Recordings {
-        let recorded = || {
-            let single = (self.record)(&vec![1.0; self.variables]);
-            Recordings {
-                #[cfg(target_arch = "x86_64")]
-                in_lanes: single.in_two_lanes(),
-                single,
-            }
-        };
-        match self.kept {
-            Some(KeptProgram(kept)) => kept.get_or_init(recorded).clone(),
-            None => recorded(),
-        }
-    }
-
     fn solution(self) -> Box<dyn Trajectory + 'a> {
-        let recordings = self.recordings();
-        let (record, watched) = (self.record, self.slip_rates);
+        let shape = self.shape();
         #[cfg(target_arch = "x86_64")]
-        if let (Some(simd), Some(program)) = (avx2(), recordings.in_lanes) {
-            let any = Pair::new(simd, [0.0; 2]);
-            return Box::new(Interpreted::of_program(record, program, watched, ROOM, any));
+        if let Some(simd) = avx2() {
+            let program = (self.record)(&vec![1.0; self.variables]);
+            if let Some(program) = program.in_two_lanes() {
+                let any = Pair::new(simd, [0.0; 2]);
+                let (record, watched) = (self.record, self.slip_rates);
+                return Box::new(Interpreted::of_program(record, program, watched, ROOM, any));
+            }
         }
-        let program = recordings.single;
-        Box::new(Interpreted::of_program(record, program, watched, ROOM, 0.0))
+        Box::new(Interpreted::new(self.record, shape, ROOM, 0.0))
     }
 
     fn reference(self) -> Box<dyn Trajectory + 'a> {
@@ -230,7 +208,6 @@ impl<'a, S: Equations<N, P> + 'a, const N: usize, const P: usize> ByRecording<'a
         let constant = self.parameters.map(f64::constant);
         let slip_rates = self.equations.slip_rates([1.0; N], constant);
         Recording {
-            kept: None,
             slip_rates: slip_rates.iter().flatten().count(),
             symmetric: self.symmetric,
             variables: N,
@@ -262,19 +239,60 @@ pub struct RecordedExpressions<'a, const N: usize> {
     pub slip_rates: Option<&'a Expressions>,
     /// The parameters.
     pub parameters: &'a [f64],
-    /// Their program, as far as it is made.
-    pub kept: &'a KeptProgram,
 }
 
 impl<'a, const N: usize> ByRecording<'a, N> for RecordedExpressions<'a, N> {
     fn recording(self, free: Option<&[usize]>) -> Recording<'a> {
-        let formulas = (self.rates, self.slip_rates);
-        let recording = Recording::of_expressions(formulas, N, self.parameters, free);
-        Recording {
-            kept: Some(self.kept),
-            ..recording
-        }
+        Recording::of_expressions((self.rates, self.slip_rates), N, self.parameters, free)
     }
+}
+
+/// The formulas at a state, in one lane and, where they have two parts that are alike, in two: to be run in loops and compiled, for tests.
+pub fn both_ways(
+    rates: &Expressions,
+    parameters: &[f64],
+    (state, free): (&[f64], Option<&[usize]>),
+) -> Vec<Box<dyn BothWays>> {
+    let recording = Recording::of_expressions((rates, None), state.len(), parameters, free);
+    let program = (recording.record)(state);
+    let mut all = Vec::new();
+    all.extend(compiled::both_ways(&program, ROOM, (state.to_vec(), 0.0)));
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = avx2()
+        && let Some(program) = program.in_two_lanes()
+    {
+        let any = Pair::new(simd, [0.0; 2]);
+        let mut lanes = vec![any; program.variables()];
+        for (&(row, lane), &x) in program.places.iter().zip(state) {
+            lanes[row] = if lane == 0 {
+                any.like(x)
+            } else {
+                lanes[row].with_lane(lane, x)
+            };
+        }
+        all.extend(compiled::both_ways(&program, ROOM, (lanes, any)));
+    }
+    all
+}
+
+/// The series of the derivatives of the formulas' solution at a state, in its components and in the parameters of these places, in loops and
+/// compiled, for tests; `None` where they are not compiled.
+pub fn columns_both_ways(
+    rates: &Expressions,
+    parameters: &[f64],
+    (state, free): (&[f64], &[usize]),
+    (order, unit): (usize, f64),
+) -> Option<[Vec<f64>; 2]> {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = avx2() {
+        let n = state.len();
+        let recording = Recording::of_expressions((rates, None), n, parameters, Some(free));
+        let program = (recording.record)(state);
+        let (of, any) = ((&program, free.len()), Four::new(simd, [0.0; 4]));
+        return compiled::columns_both_ways(of, state, (order, unit), (ROOM, any));
+    }
+    let _ = (rates, parameters, state, free, order, unit);
+    None
 }
 
 impl<'a> Recording<'a> {
@@ -286,27 +304,38 @@ impl<'a> Recording<'a> {
         free: Option<&[usize]>,
     ) -> Self {
         let free = free.map(<[usize]>::to_vec);
-        let own_factors = rates.own_factors(variables, parameters);
+        let own_factors = OnceCell::new();
         Recording {
-            kept: None,
             slip_rates: slip_rates.map_or(0, Expressions::count),
             symmetric: false,
             variables,
             free: free.as_ref().map_or(0, Vec::len),
             record: Box::new(move |x| {
-                let graph = Graph::default();
-                let place = |(i, &value): (usize, &f64)| graph.variable(i, value);
-                let x: Vec<_> = x.iter().enumerate().map(place).collect();
-                let beside = |(q, &value): (usize, &f64)| graph.variable(variables + q, value);
-                let p: Vec<_> = parameters.iter().enumerate().map(beside).collect();
-                let rates = rates.evaluate(&x, &p);
-                // The same nodes as of the rates, as far as these have them.
-                let slip_rates = slip_rates.map_or_else(Vec::new, |v| v.evaluate(&x, &p));
-                let slip_rates: Vec<_> = slip_rates.into_iter().map(Some).collect();
-                let all = (&rates[..], &slip_rates[..]);
-                let mut program = assemble(&graph, parameters, all, free.as_deref());
-                program.own_factors.clone_from(&own_factors);
-                program
+                let formulas = Formulas {
+                    rates,
+                    slip_rates,
+                    variables,
+                    parameters,
+                    free: free.as_deref(),
+                };
+                formulas.program(|| {
+                    let graph = Graph::default();
+                    let place = |(i, &value): (usize, &f64)| graph.variable(i, value);
+                    let x: Vec<_> = x.iter().enumerate().map(place).collect();
+                    let beside = |(q, &value): (usize, &f64)| graph.variable(variables + q, value);
+                    let p: Vec<_> = parameters.iter().enumerate().map(beside).collect();
+                    let made = rates.evaluate(&x, &p);
+                    // The same nodes as of the rates, as far as these have them.
+                    let slip_rates = slip_rates.map_or_else(Vec::new, |v| v.evaluate(&x, &p));
+                    let slip_rates: Vec<_> = slip_rates.into_iter().map(Some).collect();
+                    let all = (&made[..], &slip_rates[..]);
+                    let mut program = assemble(&graph, parameters, all, free.as_deref());
+                    let factors = || rates.own_factors(variables, parameters);
+                    program
+                        .own_factors
+                        .clone_from(own_factors.get_or_init(factors));
+                    program
+                })
             }),
         }
     }

@@ -47,8 +47,7 @@ impl<T: Element> Interpreted<'_, T> {
             DoubleDouble::from(h.copysign(limit.hi()))
         };
         let mut time = if whole { limit } else { step * self.unit };
-        let middle = self.is_solution_at(accuracy, step * MIDDLE);
-        let both = self.is_solution_at(accuracy, step) && middle;
+        let both = self.is_solution_at_both(accuracy, [step * MIDDLE, step]);
         let followed = both && self.kinks_converge(accuracy, step);
         if !followed || self.meets_kink(accuracy.order, step) {
             step = self.shortened(accuracy, step);
@@ -136,11 +135,30 @@ impl<T: Element> Interpreted<'_, T> {
         self.probe.begin(&self.next.x);
     }
 
-    /// Whether the series is the solution at this part of a step, which is looked at.
+    /// Whether the series is the solution at these parts of a step, of which the last one is looked at then.
     #[inline(always)]
-    fn is_solution_at(&mut self, accuracy: &Accuracy, h: DoubleDouble) -> bool {
-        self.look_at(accuracy.order, h);
-        self.is_solution(accuracy, h)
+    fn is_solution_at_both(&mut self, accuracy: &Accuracy, parts: [DoubleDouble; 2]) -> bool {
+        let points = parts.map(|h| self.any.like_exact(h));
+        let evaluated = match &mut self.compiled {
+            Some(compiled) => compiled.evaluate(&self.rows, accuracy.order, points),
+            None => false,
+        };
+        let mut explained = true;
+        for (point, h) in parts.into_iter().enumerate() {
+            match &self.compiled {
+                Some(compiled) if evaluated => {
+                    for i in 0..self.next.x.len() {
+                        let [sum, slope] = compiled.end(i, point);
+                        self.slopes[i] = slope;
+                        self.next.arrive(i, &self.reached, sum, points[point]);
+                    }
+                    self.probe.begin(&self.next.x);
+                }
+                _ => self.look_at(accuracy.order, h),
+            }
+            explained &= self.is_solution(accuracy, h);
+        }
+        explained
     }
 
     /// Whether the series of the quantities whose signs the formula takes have come to their end within a step, as their zeros are looked for
@@ -302,8 +320,7 @@ impl<T: Element> Interpreted<'_, T> {
     #[inline(always)]
     fn evaluate(&mut self, order: usize, h: DoubleDouble) {
         let h = self.any.like_exact(h);
-        let Reached { x, lost } = &self.reached;
-        for (i, (x, lost)) in x.iter().zip(lost).enumerate() {
+        for i in 0..self.next.x.len() {
             let series = self.rows.row(i);
             let mut sum = series[order];
             let mut slope = self.any.like(0.0);
@@ -312,11 +329,20 @@ impl<T: Element> Interpreted<'_, T> {
                 sum = sum.mul_add(h, *c);
             }
             self.slopes[i] = slope.mul_add(h, sum);
-            let change = sum.mul_add(h, *lost);
-            let reached = *x + change;
-            self.next.x[i] = reached;
-            self.next.lost[i] = change - (reached - *x);
+            self.next.arrive(i, &self.reached, sum, h);
         }
+    }
+}
+
+impl<T: Element> Reached<T> {
+    /// Sets a variable to what it is h after another state, where the terms after the first of its series add up to h times this sum.
+    #[inline(always)]
+    fn arrive(&mut self, i: usize, from: &Self, sum: T, h: T) {
+        let x = from.x[i];
+        let change = sum.mul_add(h, from.lost[i]);
+        let reached = x + change;
+        self.x[i] = reached;
+        self.lost[i] = change - (reached - x);
     }
 }
 
