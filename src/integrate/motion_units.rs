@@ -299,7 +299,8 @@ impl Seen {
         }
     }
 
-    /// At rest: in proportion to the slowest motion there, until the first state moves by its own value; what has no part in it has its value.
+    /// At rest: in proportion to the slowest motion there, until the first state moves by its own value, but no less than a part of its value;
+    /// what has no part in it has its value.
     fn at_rest(&self, jacobian: &Matrix) -> MotionUnits {
         let values = Vector::from_fn(self.last.len(), |i, _| self.value(i));
         let motion = slowest_motion(jacobian).unwrap_or_else(|| values.clone());
@@ -310,10 +311,12 @@ impl Seen {
         let reach = reach
             .filter(|x| x.is_finite())
             .fold(f64::INFINITY, f64::min);
+        /// Of a value: elsewhere a state may move by more than it does here.
+        const LEAST: f64 = 1.0 / 16.0;
         let size = |(moved, value): (&f64, &f64)| {
             let own = moved * reach;
             let size = round(if own.is_finite() && own > STILL * value {
-                own
+                own.max(LEAST * value)
             } else {
                 *value
             });

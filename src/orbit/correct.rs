@@ -65,6 +65,14 @@ impl Regular {
         known.unwrap_or_else(|| vec![f64::NAN; spectrum.dimension - 1])
     }
 
+    /// Whether a multiplier is so near to 1 that a branch point may be next to this orbit.
+    pub(super) fn branches_nearby(&self) -> bool {
+        /// Of ln mu.
+        const NEAR: f64 = 1.0;
+        let near = |one: &LogEigenvalue| one.ln_abs.abs() < NEAR && one.arg.abs() < NEAR;
+        self.multipliers().is_none_or(|all| all.iter().any(near))
+    }
+
     /// All nontrivial multipliers, the largest modulus first.
     pub(crate) fn multipliers(&self) -> Option<Vec<LogEigenvalue>> {
         eigenvalues_of(&self.linear.maps)

@@ -79,6 +79,8 @@ const LARGER: f64 = 2.5;
 const AHEAD: f64 = 0.3;
 const LATE: f64 = 0.005;
 const OFF_SMOOTH: f64 = 0.6;
+/// Shorter steps are not looked at for their sense.
+const ANY_SENSE: f64 = 1e-5;
 /// A slope along a parameter that is small enough where it has no condition of its own.
 const FLAT: f64 = 1e-3;
 
@@ -221,11 +223,8 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
         }
     }
 
-    fn correct(
-        &mut self,
-        DirectedPoint { here, direction }: &DirectedPoint,
-        distance: f64,
-    ) -> Result<(DirectedPoint, f64)> {
+    fn correct(&mut self, from: &DirectedPoint, distance: f64) -> Result<(DirectedPoint, f64)> {
+        let DirectedPoint { here, direction } = from;
         let mut predicted = here.site.moved(direction, distance);
         let durations = here.site.shooting.durations.iter();
         for (now, then) in durations.zip(&mut predicted.shooting.durations) {
@@ -259,8 +258,14 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
             .settings
             .direction(&next, direction)
             .ok_or_else(no_direction)?;
-        let here = next;
-        Ok((DirectedPoint { here, direction }, first))
+        let to = DirectedPoint {
+            here: next,
+            direction,
+        };
+        if distance > ANY_SENSE && !self.keeps_its_sense(from, &to) {
+            return Err(not_near("a step that goes on in the same sense"));
+        }
+        Ok((to, first))
     }
 
     fn cosine(&self, a: &DirectedPoint, b: &DirectedPoint) -> f64 {
@@ -372,6 +377,27 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
 }
 
 impl OrbitCurve<'_, '_> {
+    /// Whether a step of a branch goes on in the same sense. The parameter's change along it times 1 - mu of all multipliers changes its sign at
+    /// branch points alone, by a multiplier that passes 1 (Keller 1977). Behind a sharp turn that a step has jumped across, and behind the Hopf
+    /// point at its end, a branch would be followed back.
+    fn keeps_its_sense(&self, from: &DirectedPoint, to: &DirectedPoint) -> bool {
+        /// A slope of the parameter that is rounding.
+        const ROUNDING: f64 = 1e-9;
+        let (None, &[free]) = (self.settings.test_function, &self.settings.free[..]) else {
+            return true;
+        };
+        let [a, b] = [from, to].map(|at| {
+            let slope = at.direction.parameters[free];
+            (slope, TestFunction::Fold.of(&at.here.spectrum))
+        });
+        let known = a.0.abs().min(b.0.abs()) > ROUNDING;
+        let turns = a.0 * b.0 < 0.0;
+        let passes = a.1 * b.1 < 0.0;
+        !known
+            || turns == passes
+            || (!turns && [from, to].iter().all(|at| at.here.branches_nearby()))
+    }
+
     /// The period of the orbit at a distance into a direction.
     fn period_at(
         &mut self,
