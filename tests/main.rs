@@ -94,6 +94,7 @@ mod orbit_rows;
 mod orbits;
 #[cfg(not(feature = "parquet"))]
 mod orbits_of_systems;
+mod oscillators;
 mod packages;
 mod page;
 #[cfg(not(feature = "parquet"))]
