@@ -90,6 +90,29 @@ impl MotionUnits {
         })
     }
 
+    /// With which a run from here begins: those at its start, and of a state that begins at 0 no less than a tiny part of what it comes to.
+    /// The rate there may be all but 0, as before a switch.
+    ///
+    /// # Errors
+    /// Those of the field.
+    pub fn beginning(system: &TextSystem, start: &Vector) -> Result<Self> {
+        /// Of what a state comes to.
+        const PART: f64 = 1e-8;
+        let mut units = Self::at_start(system, start)?;
+        if start.iter().all(|x| *x != 0.0) {
+            return Ok(units);
+        }
+        if let Some((_, later)) = units.run(system, start)? {
+            let sizes = units.sizes.iter_mut().zip(&later.sizes).zip(start);
+            for ((size, later), x) in sizes {
+                if *x == 0.0 {
+                    *size = size.max(round(PART * later));
+                }
+            }
+        }
+        Ok(units)
+    }
+
     /// Of a box in which something is looked for, of these widths: a part of them, and the fastest rate in its middle.
     ///
     /// # Errors

@@ -21,8 +21,8 @@ struct Target<'a> {
 /// An arc comes to a plane within so many times what it took before; and as near to the node, in parts of the extents.
 const LATE: f64 = 8.0;
 const NEAR: f64 = 0.3;
-/// What is farther from the node than this has left the orbit: for good, or along another that is larger by far.
-const FAR: f64 = 2.0;
+/// What is farther from the node than this has left the orbit for good.
+const FAR: f64 = 4.0;
 
 /// What becomes of the flow from a node.
 enum Arrival {

@@ -79,6 +79,8 @@ const LARGER: f64 = 2.5;
 const AHEAD: f64 = 0.3;
 const LATE: f64 = 0.005;
 const OFF_SMOOTH: f64 = 0.6;
+/// A slope of the parameter along a branch that is rounding.
+const FLAT_OUT: f64 = 1e-7;
 /// Shorter steps are not looked at for their sense.
 const ANY_SENSE: f64 = 1e-5;
 /// A slope along a parameter that is small enough where it has no condition of its own.
@@ -237,21 +239,8 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
         if (to / period).ln().abs() > LONGER.ln() {
             return Err(not_near("a step to an orbit of about the same period"));
         }
-        if !here.site.shooting.is_like(&next.site.shooting, LARGER) {
-            return Err(not_near("a step to an orbit of about the same shape"));
-        }
-        if next.first > FAR_OFF {
-            return Err(not_near("a step whose end is near the predicted one"));
-        }
-        // Another sheet of a branch that winds may be near by everything but its period.
-        let expected = predicted.shooting.period();
-        let (change, late) = (expected - period, to - expected);
-        if late.abs() > AHEAD * change.abs() + LATE * period.abs() {
-            let middle = self.period_at(here, direction, 0.5 * distance)?;
-            let smooth = period + 0.5 * change + 0.25 * late;
-            if (middle - smooth).abs() > OFF_SMOOTH * 0.25 * late.abs() {
-                return Err(not_near("a step along which the period changes smoothly"));
-            }
+        if self.settings.test_function.is_none() {
+            self.goes_on(from, distance, (&predicted, &next))?;
         }
         let first = next.first;
         let direction = self
@@ -377,20 +366,52 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
 }
 
 impl OrbitCurve<'_, '_> {
+    /// Whether a step of a branch has come to the next orbit, and not to another that Newton's method has found.
+    fn goes_on(
+        &mut self,
+        from: &DirectedPoint,
+        distance: f64,
+        (predicted, next): (&ContinuationPoint, &Regular),
+    ) -> Result<()> {
+        let DirectedPoint { here, direction } = from;
+        let [period, to] = [here, next].map(|orbit| orbit.site.shooting.period());
+        if !here.site.shooting.is_like(&next.site.shooting, LARGER) {
+            return Err(not_near("a step to an orbit of about the same shape"));
+        }
+        if next.first > FAR_OFF {
+            return Err(not_near("a step whose end is near the predicted one"));
+        }
+        // Another sheet of a branch that winds may be near by everything but its period.
+        let expected = predicted.shooting.period();
+        let (change, late) = (expected - period, to - expected);
+        let slope = direction.parameters[self.settings.free[0]].abs();
+        if slope > FLAT_OUT && late.abs() > AHEAD * change.abs() + LATE * period.abs() {
+            let middle = self.period_at(here, direction, 0.5 * distance)?;
+            let smooth = period + 0.5 * change + 0.25 * late;
+            if (middle - smooth).abs() > OFF_SMOOTH * 0.25 * late.abs() {
+                return Err(not_near("a step along which the period changes smoothly"));
+            }
+        }
+        Ok(())
+    }
+
     /// Whether a step of a branch goes on in the same sense. The parameter's change along it times 1 - mu of all multipliers changes its sign at
     /// branch points alone, by a multiplier that passes 1 (Keller 1977). Behind a sharp turn that a step has jumped across, and behind the Hopf
     /// point at its end, a branch would be followed back.
     fn keeps_its_sense(&self, from: &DirectedPoint, to: &DirectedPoint) -> bool {
-        /// A slope of the parameter that is rounding.
-        const ROUNDING: f64 = 1e-9;
+        /// Of the test function: next to a Hopf point its sign is rounding.
+        const SMALL: f64 = 1e-4;
         let (None, &[free]) = (self.settings.test_function, &self.settings.free[..]) else {
             return true;
         };
         let [a, b] = [from, to].map(|at| {
             let slope = at.direction.parameters[free];
-            (slope, TestFunction::Fold.of(&at.here.spectrum))
+            let spectrum = &at.here.spectrum;
+            let fold = TestFunction::Fold;
+            (slope, fold.of(spectrum) / fold.size(spectrum))
         });
-        let known = a.0.abs().min(b.0.abs()) > ROUNDING;
+        let [slope, fold] = [(a.0, b.0), (a.1, b.1)].map(|(a, b)| a.abs().min(b.abs()));
+        let known = slope > FLAT_OUT && fold > SMALL;
         let turns = a.0 * b.0 < 0.0;
         let passes = a.1 * b.1 < 0.0;
         !known

@@ -48,6 +48,8 @@ impl Spread {
 const GROWTH: f64 = 4.0;
 /// A curve that turns on less than this way has a corner.
 const CORNER: f64 = 0.1;
+/// A variable that moves by less than this part of what the liveliest does, both in the units of the motion, may move by any factor more.
+const STILL_BESIDE: f64 = 1e-4;
 /// How far a node may stand from where it would by the measure alone, in parts of an arc.
 const ASIDE: f64 = 0.45;
 
@@ -166,7 +168,9 @@ impl ShootingNodes {
     /// are on the same sides of their mean. An orbit that has shrunk to an equilibrium and grown again behind it is on the other side.
     pub(super) fn is_like(&self, other: &Self, factor: f64) -> bool {
         let [own, others] = [self, other].map(|one| extents(one.nodes.iter()));
-        let alike = |(a, b): (&f64, &f64)| (a / b).ln().abs() <= factor.ln();
+        // What hardly moves beside the others moves by rounding.
+        let least = STILL_BESIDE * own.amax();
+        let alike = |(a, b): (&f64, &f64)| (a.max(least) / b.max(least)).ln().abs() <= factor.ln();
         if !own.iter().zip(&others).all(alike) {
             return false;
         }
@@ -247,6 +251,8 @@ impl ShootingNodes {
 pub(super) fn extents<'a>(points: impl Iterator<Item = &'a Vector> + Clone) -> Vector {
     /// The part of its value by which a variable moves that counts as moving.
     const STILL: f64 = 1e-3;
+    /// Of what the liveliest moves.
+    const NOTHING: f64 = 1e-9;
     let count = points.clone().next().map_or(0, |x| x.len());
     let extent = |i: usize| {
         let values = points.clone().map(|x| x[i]);
@@ -256,7 +262,10 @@ pub(super) fn extents<'a>(points: impl Iterator<Item = &'a Vector> + Clone) -> V
         let extent = f64::max(most - least, STILL * f64::max(most.abs(), least.abs()));
         if extent > 0.0 { extent } else { 1.0 }
     };
-    Vector::from_fn(count, |i, _| extent(i))
+    let extents = Vector::from_fn(count, |i, _| extent(i));
+    // What is rounding beside the others.
+    let least = NOTHING * extents.amax();
+    extents.map(|extent| extent.max(least))
 }
 
 /// How fast a displacement of this point grows, if any does.

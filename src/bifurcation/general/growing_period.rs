@@ -41,6 +41,11 @@ impl Periods {
         self.0.push([at, period]);
     }
 
+    /// Leaves the last one out.
+    pub fn pop(&mut self) {
+        self.0.pop();
+    }
+
     /// The limit of the coordinate at the end of the branch, whose last orbit this is; `None` where the period does not grow without bound
     /// as far as can be told.
     pub fn limit(&self, branch: &GeneralBranch<'_>, last: &Regular) -> Option<Limit> {

@@ -19,6 +19,9 @@ use std::ops::ControlFlow::{self, Break, Continue};
 /// The most steps on a branch.
 const STEPS: usize = 5000;
 
+/// How many of the last orbits of a branch may say nothing of its limit.
+const LEFT_OUT: usize = 4;
+
 /// One branch.
 pub(super) struct OrbitBranch<'s, 'b, 'a> {
     set: &'s mut OrbitBranches<'b, 'a>,
@@ -98,10 +101,18 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
     }
 
     /// Where the branch goes no further, or tends to.
-    fn end(&self, last: &Regular, why: &str) -> GeneralPoint {
+    fn end(&mut self, last: &Regular, why: &str) -> GeneralPoint {
         let point = self.set.row(self.number, last, Some(Label::Mx));
         let branch = self.set.branch;
-        let Some(Limit { at, is_saddle_node }) = self.periods.limit(branch, last) else {
+        // What is left of the way may be less than the last orbits are off by.
+        let periods = &mut self.periods;
+        let limit = (0..=LEFT_OUT).find_map(|left_out| {
+            if left_out > 0 {
+                periods.pop();
+            }
+            periods.limit(branch, last)
+        });
+        let Some(Limit { at, is_saddle_node }) = limit else {
             return GeneralPoint {
                 note: Some(why.to_owned()),
                 ..point
