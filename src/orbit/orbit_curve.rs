@@ -3,13 +3,10 @@
 use super::certain::certain;
 use super::continuation_point::{ContinuationPoint, TangentVector};
 use super::correct::{Condition, Corrector, Goal, Regular};
-use super::linear::Linear;
-use super::shooting_nodes::ShootingNodes;
-use super::spread::Spread;
+use super::new_nodes::no_nodes;
 use super::test_function::TestFunction;
 use crate::continuation::{self, Continuation, CurveStep, SolutionCurve, StepControl, Stop};
 use crate::error::{Error, Result};
-use crate::field::Vector;
 use crate::model::STIFFNESS;
 use std::sync::Arc as Shared;
 
@@ -62,9 +59,8 @@ pub type Palc<'c, 'f> = Continuation<OrbitCurve<'c, 'f>>;
 /// Lengths of the first and of the shortest steps; of orbits smaller than 1 the shortest is this part of their extent.
 const FIRST: f64 = 0.02;
 const SHORTEST: f64 = 1e-9;
-/// What a first correction is to be, and may be.
+/// What a first correction is to be.
 const OFF: f64 = 0.03;
-const FAR_OFF: f64 = 0.15;
 /// The least cosine between the directions before and after a step.
 const TURN: f64 = 0.7;
 /// Progress of the last steps, as a part of the way.
@@ -72,15 +68,6 @@ const PROGRESS: f64 = 2e-7;
 /// By how much the time to the next plane is expected to change in a step, at most; and the period, which a second time around doubles.
 const STRETCH: f64 = 2.0;
 const LONGER: f64 = 1.8;
-/// By how much the way of a variable may grow or shrink in a step.
-const LARGER: f64 = 2.5;
-/// From where on the period is looked at half way too: what it is off its prediction by, in parts of its predicted change and of itself. And
-/// what it may be off there from a smooth change, in parts of what a jump would make.
-const AHEAD: f64 = 0.3;
-const LATE: f64 = 0.005;
-const OFF_SMOOTH: f64 = 0.6;
-/// A slope of the parameter along a branch that is rounding.
-const FLAT_OUT: f64 = 1e-7;
 /// Shorter steps are not looked at for their sense.
 const ANY_SENSE: f64 = 1e-5;
 /// A slope along a parameter that is small enough where it has no condition of its own.
@@ -366,74 +353,8 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
 }
 
 impl OrbitCurve<'_, '_> {
-    /// Whether a step of a branch has come to the next orbit, and not to another that Newton's method has found.
-    fn goes_on(
-        &mut self,
-        from: &DirectedPoint,
-        distance: f64,
-        (predicted, next): (&ContinuationPoint, &Regular),
-    ) -> Result<()> {
-        let DirectedPoint { here, direction } = from;
-        let [period, to] = [here, next].map(|orbit| orbit.site.shooting.period());
-        if !here.site.shooting.is_like(&next.site.shooting, LARGER) {
-            return Err(not_near("a step to an orbit of about the same shape"));
-        }
-        if next.first > FAR_OFF {
-            return Err(not_near("a step whose end is near the predicted one"));
-        }
-        // Another sheet of a branch that winds may be near by everything but its period.
-        let expected = predicted.shooting.period();
-        let (change, late) = (expected - period, to - expected);
-        let slope = direction.parameters[self.settings.free[0]].abs();
-        if slope > FLAT_OUT && late.abs() > AHEAD * change.abs() + LATE * period.abs() {
-            let middle = self.period_at(here, direction, 0.5 * distance)?;
-            let smooth = period + 0.5 * change + 0.25 * late;
-            if (middle - smooth).abs() > OFF_SMOOTH * 0.25 * late.abs() {
-                return Err(not_near("a step along which the period changes smoothly"));
-            }
-        }
-        Ok(())
-    }
-
-    /// Whether a step of a branch goes on in the same sense. The parameter's change along it times 1 - mu of all multipliers changes its sign at
-    /// branch points alone, by a multiplier that passes 1 (Keller 1977). Behind a sharp turn that a step has jumped across, and behind the Hopf
-    /// point at its end, a branch would be followed back.
-    fn keeps_its_sense(&self, from: &DirectedPoint, to: &DirectedPoint) -> bool {
-        /// Of the test function: next to a Hopf point its sign is rounding.
-        const SMALL: f64 = 1e-4;
-        let (None, &[free]) = (self.settings.test_function, &self.settings.free[..]) else {
-            return true;
-        };
-        let [a, b] = [from, to].map(|at| {
-            let slope = at.direction.parameters[free];
-            let spectrum = &at.here.spectrum;
-            let fold = TestFunction::Fold;
-            (slope, fold.of(spectrum) / fold.size(spectrum))
-        });
-        let [slope, fold] = [(a.0, b.0), (a.1, b.1)].map(|(a, b)| a.abs().min(b.abs()));
-        let known = slope > FLAT_OUT && fold > SMALL;
-        let turns = a.0 * b.0 < 0.0;
-        let passes = a.1 * b.1 < 0.0;
-        !known
-            || turns == passes
-            || (!turns && [from, to].iter().all(|at| at.here.branches_nearby()))
-    }
-
-    /// The period of the orbit at a distance into a direction.
-    fn period_at(
-        &mut self,
-        here: &Regular,
-        direction: &TangentVector,
-        distance: f64,
-    ) -> Result<f64> {
-        let predicted = here.site.moved(direction, distance);
-        let conditions = self.settings.and(Condition::Plane(direction, &predicted));
-        let found = self.corrected(here, predicted.clone(), &conditions)?;
-        Ok(found.site.shooting.period())
-    }
-
     /// The orbit near a guess that meets the conditions.
-    fn corrected(
+    pub(super) fn corrected(
         &mut self,
         nearby: &Regular,
         guess: ContinuationPoint,
@@ -443,131 +364,10 @@ impl OrbitCurve<'_, '_> {
         self.corrector
             .correct_beside(nearby, guess, free, conditions, Goal::STEP)
     }
-
-    /// Whether the nodes had better be spread anew, or an arc grows by too much.
-    fn is_uneven(&self, orbit: &Regular) -> bool {
-        let linear = &orbit.linear;
-        let field = self.corrector.family.field(orbit.site.at);
-        let volumes = linear.logs.iter().map(|logs| logs.volume);
-        linear.growth().any(|growth| growth > GROWN)
-            || orbit
-                .site
-                .shooting
-                .is_uneven(&field, self.spread(), volumes)
-    }
-
-    fn spread(&self) -> Spread {
-        match self.settings.test_function {
-            None => Spread::BRANCH,
-            Some(_) => Spread::CURVE,
-        }
-    }
-
-    /// The orbit with its arcs cut anew.
-    fn cut(&mut self, DirectedPoint { here, direction }: &DirectedPoint) -> Option<DirectedPoint> {
-        let old = &here.site;
-        let field = self.corrector.family.field(old.at);
-        let spread = self.spread();
-        let (shooting, begin) = old
-            .shooting
-            .spread(&mut self.corrector.tracer, &field, spread)
-            .ok()?;
-        let mut site = ContinuationPoint {
-            shooting,
-            at: old.at,
-        };
-        let mut linear = self.corrector.linear(&site)?;
-        for _ in 0..SPLITS {
-            if linear.growth().all(|growth| growth < GROWTH) {
-                break;
-            }
-            let parts = linear.parts(GROWTH);
-            let tracer = &mut self.corrector.tracer;
-            site.shooting = site.shooting.split(tracer, &field, &parts).ok()?;
-            linear = self.corrector.linear(&site)?;
-        }
-        drop(field);
-        let (node, moved) = self.carried(old, direction, (&site.shooting, begin))?;
-        let scale = self.corrector.family.scale(site.at);
-        let (_, along) = linear.solutions(&self.settings.free, scale)?;
-        let first = most_moved(&along);
-        let count = site.shooting.nodes.len();
-        site.shooting = site.shooting.beginning_at(first);
-        let node = (node + count - first) % count;
-        let parameters = direction.parameters;
-        self.arrived(site, linear.beginning_at(first), |_, new| {
-            moved.dot(&new.nodes[node]) + product(&parameters, &new.parameters)
-        })
-    }
-
-    /// What a direction displaces the next one of new nodes by after the node that it displaces most, across the flow; and which that is.
-    /// The first of the new nodes is so long after the first of the old ones.
-    fn carried(
-        &mut self,
-        old: &ContinuationPoint,
-        direction: &TangentVector,
-        (new, begin): (&ShootingNodes, f64),
-    ) -> Option<(usize, Vector)> {
-        let most = most_moved(std::slice::from_ref(direction));
-        let (period, durations) = (new.period(), &old.shooting.durations);
-        let time = durations[..most].iter().sum::<f64>() - begin;
-        let mut later = Vec::with_capacity(new.nodes.len());
-        let mut at = 0.0;
-        for duration in &new.durations {
-            // From the old node on, once around.
-            later.push(((at - time) / period).rem_euclid(1.0) * period);
-            at += duration;
-        }
-        let next = (0..later.len()).min_by(|&a, &b| later[a].abs().total_cmp(&later[b].abs()))?;
-        let family = self.corrector.family;
-        let field = family.field(old.at);
-        let mut moved = direction.nodes[most].clone();
-        if later[next] != 0.0 {
-            let free = family.plane();
-            let mut arcs = self.corrector.tracer.arcs(&field, &free).ok()?;
-            let arc = arcs.arc(&old.shooting.nodes[most], later[next]).ok()?;
-            moved = &arc.tangent * moved;
-            let scale = family.scale(old.at);
-            if arc.parameters.ncols() == scale.len() {
-                for (i, (scale, change)) in scale.iter().zip(direction.parameters).enumerate() {
-                    moved.axpy(scale * change, &arc.parameters.column(i), 1.0);
-                }
-            }
-        }
-        let node = &new.nodes[next];
-        let flow = field.f(node);
-        let normal = family.normal(node, flow.clone());
-        let along = normal.dot(&moved) / normal.dot(&flow);
-        moved.axpy(-along, &flow, 1.0);
-        Some((next, moved))
-    }
-
-    /// At an orbit that has other nodes than those before, going on in the direction whose product with the one so far is positive.
-    fn arrived(
-        &mut self,
-        site: ContinuationPoint,
-        linear: Linear,
-        with_old: impl FnOnce(&ContinuationPoint, &TangentVector) -> f64,
-    ) -> Option<DirectedPoint> {
-        let own = self.settings.own();
-        let here = self
-            .corrector
-            .look_with(site, linear, &self.settings.free, &own)?;
-        let any = here.along.first()?.clone();
-        let mut direction = self.settings.direction(&here, &any)?;
-        if with_old(&here.site, &direction) < 0.0 {
-            direction = direction.scaled(-1.0);
-        }
-        Some(DirectedPoint { here, direction })
-    }
 }
 
-fn product(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn product(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-fn no_nodes() -> Stop {
-    Stop::Failed("the orbit can't be cut into arcs anew: the integration along it fails".into())
 }
 
 /// Where the continuation begins the curve has no direction.
@@ -575,30 +375,11 @@ fn no_direction() -> Error {
     not_near("the direction of the curve")
 }
 
-fn not_near(what: &'static str) -> Error {
+pub(super) fn not_near(what: &'static str) -> Error {
     Error::NotConverged {
         what,
         iterations: 0,
         residual: f64::INFINITY,
         tolerance: Goal::STEP.done,
     }
-}
-
-/// ln of what an arc of a new mesh may grow by, and one of an old mesh.
-const GROWTH: f64 = 5.0;
-const GROWN: f64 = 7.0;
-/// How often arcs are split for it.
-const SPLITS: usize = 6;
-
-/// The node that the tangent vectors left to the orbit move most. All others are found from the first one: from the small end of a
-/// tangent vector that grows by many decades nothing is found.
-fn most_moved(along: &[TangentVector]) -> usize {
-    let moved = |k: usize| -> f64 {
-        let each = along.iter().map(|tangent| tangent.nodes[k].norm_squared());
-        each.sum()
-    };
-    let count = along.first().map_or(0, |tangent| tangent.nodes.len());
-    (0..count)
-        .max_by(|&a, &b| moved(a).total_cmp(&moved(b)))
-        .unwrap_or(0)
 }

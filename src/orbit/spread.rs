@@ -13,7 +13,7 @@ use crate::number::eigenvalues;
 /// The least and the largest number of nodes.
 const NODES: (usize, usize) = (12, 256);
 /// Where the steps are so long that fewer nodes have a place, these are spread evenly in time.
-const FEWEST: usize = 4;
+const FEWEST: usize = 8;
 /// How long arcs are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Spread {

@@ -5,6 +5,7 @@
 //! two branches cross, and also near where they would cross but for a perturbation: that is beta, which then is not zero.
 
 use super::generic::FieldEquilibria;
+use super::generic_curve_problem::sign;
 use crate::field::{Matrix, Vector};
 use crate::integrate::AnyExact;
 use crate::number::null_vector;
@@ -100,10 +101,7 @@ fn certain(family: &FieldEquilibria<'_>, u: &Vector) -> Option<BranchPoint> {
     let n = (u.len() - 2) / 2;
     let mut noise = Vector::zeros(u.len());
     for time in 0..TRIED {
-        let moved = Vector::from_fn(u.len(), |i, _| {
-            let up = ((i + 2) * (2 * time + 3) / 2).is_multiple_of(2);
-            u[i] * (1.0 + if up { f64::EPSILON } else { -f64::EPSILON })
-        });
+        let moved = Vector::from_fn(u.len(), |i, _| u[i] * (1.0 + f64::EPSILON * sign(i, time)));
         let left = residual(family, &moved);
         noise = noise.zip_map(&left, |most: f64, x: f64| most.max(x.abs()));
     }

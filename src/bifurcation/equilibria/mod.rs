@@ -14,6 +14,7 @@ pub mod generic_crossing;
 pub mod generic_curve;
 mod generic_curve_observer;
 mod generic_curve_problem;
+mod generic_observer;
 pub(crate) mod hopf;
 mod hopf_curve;
 pub(crate) mod hopf_special;

@@ -5,6 +5,7 @@
 //! of the state in the null space (Golubitsky & Schaeffer 1985, Singularities and Groups in Bifurcation Theory, chapter VII, for the reduction to m equations).
 
 use super::generic::FieldEquilibria;
+use super::generic_curve_problem::sign;
 use crate::field::{Matrix, Vector};
 use crate::integrate::AnyExact;
 use crate::number::singular_values;
@@ -171,9 +172,7 @@ impl Unknowns<'_, '_> {
         let here = self.residual(u);
         for time in 0..TRIED {
             let moved = Vector::from_fn(u.len(), |i, _| {
-                let up = ((i + 2) * (2 * time + 3) / 2).is_multiple_of(2);
-                let digit = f64::EPSILON * (1.0 + u[i].abs());
-                u[i] + if up { digit } else { -digit }
+                u[i] + f64::EPSILON * (1.0 + u[i].abs()) * sign(i, time)
             });
             let change = self.residual(&moved) - &here;
             noise = noise.zip_map(&change, |most: f64, x: f64| most.max(x.abs()));

@@ -1,5 +1,6 @@
 //! Branches of equilibria along one parameter, with all that branches off.
 
+use super::multiple::Multiple;
 use super::runaway::{Runaway, Runs};
 use super::splits::with_splits;
 use super::{
@@ -7,7 +8,6 @@ use super::{
 };
 use crate::bifurcation::equilibria::generic::{FieldEquilibria, FoundEquilibrium, Onward};
 use crate::bifurcation::equilibria::generic_curve::{EquilibriumBifurcation, EquilibriumCurve};
-use crate::bifurcation::equilibria::multiple::MultiplePoint;
 use crate::bifurcation::{Criticality, Label};
 use crate::continuation::{Settings, Stop};
 use crate::error::Result;
@@ -44,7 +44,7 @@ pub fn equilibria(branch: &GeneralBranch<'_>, seen: GeneralObserver<'_>) -> Resu
 }
 
 /// An observer of points and their kinds.
-type PointObserver<'a> = &'a mut dyn FnMut(GeneralPoint, Reported) -> ControlFlow<()>;
+pub(super) type PointObserver<'a> = &'a mut dyn FnMut(GeneralPoint, Reported) -> ControlFlow<()>;
 
 /// The kind of a point that is reported.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -57,14 +57,6 @@ pub(super) enum Reported {
     Limit,
 }
 
-/// A branch point at which several eigenvalues are 0.
-struct Multiple {
-    point: MultiplePoint,
-    /// Where branches that begin there pass a cylinder around it, (state, coordinate), and its radius.
-    begins: Vec<Vector>,
-    radius: f64,
-}
-
 /// All branches, and what is known of them so far.
 pub(super) struct EquilibriumBranches<'b, 'a> {
     branch: &'b GeneralBranch<'a>,
@@ -74,9 +66,9 @@ pub(super) struct EquilibriumBranches<'b, 'a> {
     /// Branch points, and how many branches passed each.
     crossings: Vec<(FoundEquilibrium, usize)>,
     /// Branch points at which several eigenvalues are 0.
-    multiples: Vec<Multiple>,
+    pub(super) multiples: Vec<Multiple>,
     /// The points of all branches, (state, coordinate), branch by branch.
-    traces: Vec<Vec<Vector>>,
+    pub(super) traces: Vec<Vec<Vector>>,
 }
 
 impl<'b, 'a> EquilibriumBranches<'b, 'a> {
@@ -157,59 +149,8 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
         Ok(())
     }
 
-    /// One of the branches that begin at a multiple branch point, if none is known that passes there.
-    fn begin(
-        &mut self,
-        multiple: usize,
-        which: usize,
-        seen: PointObserver<'_>,
-    ) -> Result<ControlFlow<()>> {
-        let Some(begin) = self.multiples[multiple].begins.get(which) else {
-            return Ok(Continue(()));
-        };
-        let (state, parameter) = apart(begin);
-        if !self.inside(parameter) || !self.in_box(&state) || self.passes(multiple, which) {
-            return Ok(Continue(()));
-        }
-        let direction = (begin - self.multiples[multiple].point.place()).normalize();
-        let onward = Onward {
-            state,
-            parameter,
-            direction,
-            across: true,
-        };
-        self.follow(&onward, seen)
-    }
-
-    /// Whether a branch that is known is one of those that begin at a multiple branch point: it passes the cylinder there, and nearest to this one.
-    fn passes(&self, multiple: usize, which: usize) -> bool {
-        /// Of the radius: where it passes.
-        const NEAR: f64 = 0.5;
-        let Multiple {
-            point,
-            begins,
-            radius,
-        } = &self.multiples[multiple];
-        let place = |x: &Vector| {
-            let (state, parameter) = apart(x);
-            self.place(&state, parameter)
-        };
-        let begins: Vec<Vector> = begins.iter().map(place).collect();
-        let mut steps = self.traces.iter().flat_map(|trace| trace.windows(2));
-        steps.any(|step| {
-            let [a, b] = [&step[0], &step[1]].map(|x| point.radius(x) - radius);
-            if a * b > 0.0 || a == b {
-                return false;
-            }
-            let passed = place(&(&step[0] + (&step[1] - &step[0]) * (a / (a - b))));
-            let distance = |begin: &Vector| (begin - &passed).norm();
-            let here = distance(&begins[which]);
-            here < NEAR * radius && begins.iter().all(|other| here <= distance(other))
-        })
-    }
-
     /// Whether a state is in the box, where there is one.
-    fn in_box(&self, state: &Vector) -> bool {
+    pub(super) fn in_box(&self, state: &Vector) -> bool {
         let mut bounds = self.branch.system.bounds.iter().zip(state);
         bounds.all(|(bound, x)| (bound.range.0..=bound.range.1).contains(x))
     }
@@ -228,11 +169,11 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
     }
 
     /// (state, coordinate), the same for its mirror images.
-    fn place(&self, state: &Vector, at: f64) -> Vector {
+    pub(super) fn place(&self, state: &Vector, at: f64) -> Vector {
         self.branch.system.representative(state).push(at)
     }
 
-    fn inside(&self, x: f64) -> bool {
+    pub(super) fn inside(&self, x: f64) -> bool {
         let (a, b) = self.branch.range;
         (a.min(b)..=a.max(b)).contains(&x)
     }
@@ -286,7 +227,11 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
     }
 
     /// One branch, both ways round from a branch point being two.
-    fn follow(&mut self, onward: &Onward, seen: PointObserver<'_>) -> Result<ControlFlow<()>> {
+    pub(super) fn follow(
+        &mut self,
+        onward: &Onward,
+        seen: PointObserver<'_>,
+    ) -> Result<ControlFlow<()>> {
         let number = self.count;
         let half = self.half(onward, number, seen)?;
         // What was thought to be an equilibrium may be none.
@@ -417,31 +362,6 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
         })
     }
 
-    /// A branch point at which several eigenvalues are 0, with the branches that begin there; cylinders have at first this radius.
-    fn multiple(&self, point: &MultiplePoint, radius: f64) -> Multiple {
-        let branches = self.with_family(|family| point.branches(family, radius));
-        let (all, radius) = branches.unwrap_or_default();
-        // Mirror images are one.
-        let place = |begin: &Vector| {
-            let (state, parameter) = apart(begin);
-            self.place(&state, parameter)
-        };
-        let mut begins: Vec<Vector> = Vec::new();
-        for begin in all {
-            if !begins
-                .iter()
-                .any(|other| near(&place(other), &place(&begin)))
-            {
-                begins.push(begin);
-            }
-        }
-        Multiple {
-            point: point.clone(),
-            begins,
-            radius,
-        }
-    }
-
     /// Reports that a branch runs to infinity after its last point.
     fn to_infinity(
         &self,
@@ -570,25 +490,8 @@ struct Half {
     stopped: Option<Stop>,
 }
 
-impl Multiple {
-    /// What is said of it.
-    fn note(&self) -> String {
-        let begins = match self.begins.len() {
-            0 => "which other branches begin here is not known".to_owned(),
-            count => format!("branches that begin here: {count}"),
-        };
-        format!("{} eigenvalues are 0; {begins}", self.point.multiplicity())
-    }
-}
-
-/// The state and the coordinate.
-fn apart(place: &Vector) -> (Vector, f64) {
-    let last = place.len() - 1;
-    (place.rows(0, last).into_owned(), place[last])
-}
-
 /// Whether two points of (state, coordinate) are one.
-fn near(a: &Vector, b: &Vector) -> bool {
+pub(super) fn near(a: &Vector, b: &Vector) -> bool {
     let mut pairs = a.iter().zip(b);
     pairs.all(|(a, b)| (a - b).abs() < SAME * (1.0 + a.abs()))
 }

@@ -7,6 +7,7 @@ mod curves;
 mod ends;
 mod equilibria;
 mod growing_period;
+mod multiple;
 mod multipliers_together;
 mod orbit_branch;
 mod orbit_curves;

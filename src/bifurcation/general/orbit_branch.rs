@@ -313,7 +313,7 @@ fn turns(from: &DirectedPoint, at: &DirectedPoint, to: &DirectedPoint) -> bool {
     /// Slopes of the parameter along the branch that are rounding: along a canard it turns within that.
     const ROUNDING: f64 = 1e-8;
     /// The slope at a fold, in parts of those at the ends of the step, where it changes its sign on the step, and where it is seen to turn twice.
-    const ONCE: f64 = 0.3;
+    const ONCE: f64 = 0.02;
     const TWICE: f64 = 1e-3;
     let [from, at, to] = [from, at, to].map(|one| one.direction.parameters[FREE]);
     let most = from.abs().max(to.abs());

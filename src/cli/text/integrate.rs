@@ -22,7 +22,7 @@ impl PlannedRun for TextPlan {
             "method": self.method.name(),
             "asked": self.asked_method,
             "rtol": self.tolerances.rtol,
-            "atol": self.absolute_tolerances().map_or(json!(self.tolerances.atol), |each| json!(each)),
+            "atol": self.told_atol(),
             "max_step": self.model.units().max_step(self.tolerances),
             "max_steps": self.max_steps,
             "dimension": self.start.len(),

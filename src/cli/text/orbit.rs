@@ -24,10 +24,7 @@ impl OrbitSearch for TextOrbitPlan {
     }
 
     fn absolute_tolerance(&self, accuracy: &OrbitAccuracy) -> Value {
-        match self.absolute_tolerances(accuracy) {
-            Some(each) => json!(each),
-            None => json!(accuracy.tolerances.atol),
-        }
+        self.told_atol(accuracy)
     }
 
     fn has_rows(&self) -> bool {

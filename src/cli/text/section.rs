@@ -30,7 +30,7 @@ fn numerics(plan: &TextSectionPlan) -> Value {
         "method": plan.method.name(),
         "asked": plan.asked_method,
         "rtol": plan.tolerances.rtol,
-        "atol": plan.absolute_tolerances().map_or(json!(plan.tolerances.atol), |each| json!(each)),
+        "atol": plan.told_atol(),
         "max_step": plan.model.units().max_step(plan.tolerances),
         "max_steps": plan.max_steps,
         "dimension": plan.start.len(),

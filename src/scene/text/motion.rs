@@ -6,6 +6,7 @@ use crate::field::Vector;
 use crate::integrate::{MotionUnits, Tolerances};
 use crate::number::{Interval, Uncertain};
 use crate::orbit::{Crosscheck, Orbit, OrbitAccuracy};
+use serde_json::{Value, json};
 
 impl MotionUnits {
     /// Of a model's run from here; interfaces keep theirs, in which all are of order 1.
@@ -42,9 +43,17 @@ impl MotionUnits {
         inward
     }
 
-    /// What each state may err by in a step beside its relative error, in the system's own units.
-    pub fn outward_atol(&self, atol: f64) -> Vec<f64> {
-        self.sizes.iter().map(|size| size * atol).collect()
+    /// The absolute tolerance as it is told: one number that is given, or of interfaces; else what each state may err by in its own unit.
+    pub fn told_atol(&self, model: &TextModel, atol: f64, atol_is_given: bool) -> Value {
+        match atol_is_given || model.slab.is_some() {
+            true => json!(atol),
+            false => json!(
+                self.sizes
+                    .iter()
+                    .map(|size| size * atol)
+                    .collect::<Vec<_>>()
+            ),
+        }
     }
 
     /// The accuracy of an orbit in these units.

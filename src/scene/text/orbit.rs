@@ -19,6 +19,7 @@ use crate::scene::plan::{Sampling, equally_spaced, longest_in_words, stepping};
 use crate::scene::system::Described;
 #[cfg(feature = "sundials")]
 use crate::sundials::MultistepMethod;
+use serde_json::Value;
 
 /// A periodic orbit that is asked for, checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -127,11 +128,10 @@ impl TextOrbitPlan {
         Ok(found)
     }
 
-    /// What each state may err by in a step beside its relative error, in its own unit; `None` where one number is given for all, or for
-    /// interfaces.
-    pub fn absolute_tolerances(&self, accuracy: &OrbitAccuracy) -> Option<Vec<f64>> {
-        let own = !self.atol_is_given && self.model.slab.is_none();
-        own.then(|| self.units.outward_atol(accuracy.tolerances.atol))
+    /// The absolute tolerance of this accuracy as it is told.
+    pub fn told_atol(&self, accuracy: &OrbitAccuracy) -> Value {
+        let atol = accuracy.tolerances.atol;
+        self.units.told_atol(&self.model, atol, self.atol_is_given)
     }
 
     /// The field in the units in which the orbit is looked for.

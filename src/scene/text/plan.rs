@@ -13,7 +13,7 @@ use crate::scene::plan::{Sampling, longest_in_words, sampling, stepping, until};
 use crate::scene::program::{Program, Stretch};
 use crate::scene::system::Described;
 use crate::scene::units::{Quantity, Units};
-use serde_json::json;
+use serde_json::{Value, json};
 use std::borrow::Cow;
 
 /// A run of a system of one's own, checked.
@@ -167,11 +167,10 @@ impl TextPlan {
         })
     }
 
-    /// What each state may err by in a step beside its relative error, as the run begins; `None` where one number is given for all, or for
-    /// interfaces.
-    pub fn absolute_tolerances(&self) -> Option<Vec<f64>> {
-        let own = !self.atol_is_given && self.model.slab.is_none();
-        own.then(|| self.units.outward_atol(self.tolerances.atol))
+    /// The absolute tolerance as it is told: as the run begins.
+    pub fn told_atol(&self) -> Value {
+        let atol = self.tolerances.atol;
+        self.units.told_atol(&self.model, atol, self.atol_is_given)
     }
 
     /// The columns of the points of a picture.
@@ -246,7 +245,7 @@ impl TextPlan {
             self.method.name(),
             self.method.reason(),
             self.tolerances.rtol,
-            atol_in_words(self.tolerances.atol, self.absolute_tolerances().is_some()),
+            atol_in_words(self.tolerances.atol, self.told_atol().is_array()),
             crate::error::count(self.max_steps),
             longest_in_words(self.tolerances, self.model.units())
         )

@@ -20,6 +20,7 @@ use crate::scene::section::{
 use crate::scene::system::Described;
 use crate::scene::units::Quantity;
 use crate::section::{Periodic, SeriesVariables, Surface, Watching, usual_patience};
+use serde_json::Value;
 
 /// The longest time to wait for a return where nobody says otherwise, in that in which the liveliest state goes through its range.
 const PATIENCE: f64 = 1e4;
@@ -153,7 +154,7 @@ impl TextSectionPlan {
             self.method.name(),
             self.method.reason(),
             self.tolerances.rtol,
-            atol_in_words(self.tolerances.atol, self.absolute_tolerances().is_some()),
+            atol_in_words(self.tolerances.atol, self.told_atol().is_array()),
             crate::error::count(self.max_steps),
             longest_in_words(self.tolerances, self.model.units()),
             self.model.system.states()[self.state],
@@ -164,10 +165,10 @@ impl TextSectionPlan {
         )
     }
 
-    /// What each state may err by in a step beside its relative error; `None` where one number is given for all, or for interfaces.
-    pub fn absolute_tolerances(&self) -> Option<Vec<f64>> {
-        let own = !self.atol_is_given && self.model.slab.is_none();
-        own.then(|| self.units.outward_atol(self.tolerances.atol))
+    /// The absolute tolerance as it is told.
+    pub fn told_atol(&self) -> Value {
+        let atol = self.tolerances.atol;
+        self.units.told_atol(&self.model, atol, self.atol_is_given)
     }
 
     /// The section in the units of the run.

@@ -1,0 +1,88 @@
+//! Whether a step along a branch of orbits has come to the next orbit: Newton's method may find one on another sheet of the branch, or on the way
+//! back. Both have been seen behind the sharp turns of canards and where a branch winds (Hindmarsh and Rose's model).
+
+use super::continuation_point::{ContinuationPoint, TangentVector};
+use super::correct::{Condition, Regular};
+use super::orbit_curve::{DirectedPoint, OrbitCurve, not_near};
+use super::test_function::TestFunction;
+use crate::error::Result;
+
+/// What a first correction may be.
+const FAR_OFF: f64 = 0.15;
+/// By how much the way of a variable may grow or shrink in a step.
+const LARGER: f64 = 2.5;
+/// From where on the period is looked at half way too: what it is off its prediction by, in parts of its predicted change and of itself. And
+/// what it may be off there from a smooth change, in parts of what a jump would make.
+const AHEAD: f64 = 0.3;
+const LATE: f64 = 0.005;
+const OFF_SMOOTH: f64 = 0.6;
+/// A slope of the parameter along a branch that is rounding.
+const FLAT_OUT: f64 = 1e-7;
+
+impl OrbitCurve<'_, '_> {
+    /// Whether a step of a branch has come to the next orbit, and not to another that Newton's method has found.
+    pub(super) fn goes_on(
+        &mut self,
+        from: &DirectedPoint,
+        distance: f64,
+        (predicted, next): (&ContinuationPoint, &Regular),
+    ) -> Result<()> {
+        let DirectedPoint { here, direction } = from;
+        let [period, to] = [here, next].map(|orbit| orbit.site.shooting.period());
+        if !here.site.shooting.is_like(&next.site.shooting, LARGER) {
+            return Err(not_near("a step to an orbit of about the same shape"));
+        }
+        if next.first > FAR_OFF {
+            return Err(not_near("a step whose end is near the predicted one"));
+        }
+        // Another sheet of a branch that winds may be near by everything but its period.
+        let expected = predicted.shooting.period();
+        let (change, late) = (expected - period, to - expected);
+        let slope = direction.parameters[self.settings.free[0]].abs();
+        if slope > FLAT_OUT && late.abs() > AHEAD * change.abs() + LATE * period.abs() {
+            let middle = self.period_at(here, direction, 0.5 * distance)?;
+            let smooth = period + 0.5 * change + 0.25 * late;
+            if (middle - smooth).abs() > OFF_SMOOTH * 0.25 * late.abs() {
+                return Err(not_near("a step along which the period changes smoothly"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a step of a branch goes on in the same sense. The parameter's change along it times 1 - mu of all multipliers changes its sign at
+    /// branch points alone, by a multiplier that passes 1 (Keller 1977). Behind a sharp turn that a step has jumped across, and behind the Hopf
+    /// point at its end, a branch would be followed back.
+    pub(super) fn keeps_its_sense(&self, from: &DirectedPoint, to: &DirectedPoint) -> bool {
+        /// Of the test function: next to a Hopf point its sign is rounding.
+        const SMALL: f64 = 1e-6;
+        let (None, &[free]) = (self.settings.test_function, &self.settings.free[..]) else {
+            return true;
+        };
+        let [a, b] = [from, to].map(|at| {
+            let slope = at.direction.parameters[free];
+            let spectrum = &at.here.spectrum;
+            let fold = TestFunction::Fold;
+            (slope, fold.of(spectrum) / fold.size(spectrum))
+        });
+        let [slope, fold] = [(a.0, b.0), (a.1, b.1)].map(|(a, b)| a.abs().min(b.abs()));
+        let known = slope > FLAT_OUT && fold > SMALL;
+        let turns = a.0 * b.0 < 0.0;
+        let passes = a.1 * b.1 < 0.0;
+        !known
+            || turns == passes
+            || (!turns && [from, to].iter().all(|at| at.here.branches_nearby()))
+    }
+
+    /// The period of the orbit at a distance into a direction.
+    fn period_at(
+        &mut self,
+        here: &Regular,
+        direction: &TangentVector,
+        distance: f64,
+    ) -> Result<f64> {
+        let predicted = here.site.moved(direction, distance);
+        let conditions = self.settings.and(Condition::Plane(direction, &predicted));
+        let found = self.corrected(here, predicted.clone(), &conditions)?;
+        Ok(found.site.shooting.period())
+    }
+}
