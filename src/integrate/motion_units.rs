@@ -90,23 +90,23 @@ impl MotionUnits {
         })
     }
 
-    /// With which a run from here begins: those at its start, and of a state that begins at 0 no less than a tiny part of what it comes to.
-    /// The rate there may be all but 0, as before a switch.
+    /// With which a run from here that lasts so long begins: those at its start, and of a state that begins at 0 no less than a tiny part of what
+    /// it comes to. The rate there may be all but 0, as before a switch.
     ///
     /// # Errors
     /// Those of the field.
-    pub fn beginning(system: &TextSystem, start: &Vector) -> Result<Self> {
+    pub fn beginning(system: &TextSystem, start: &Vector, lasting: f64) -> Result<Self> {
         /// Of what a state comes to.
         const PART: f64 = 1e-8;
         let mut units = Self::at_start(system, start)?;
         if start.iter().all(|x| *x != 0.0) {
             return Ok(units);
         }
-        if let Some((_, later)) = units.run(system, start)? {
-            let sizes = units.sizes.iter_mut().zip(&later.sizes).zip(start);
-            for ((size, later), x) in sizes {
+        if let Some(seen) = units.watched(&units.field(system)?, start, lasting / units.time)? {
+            let sizes = units.sizes.iter_mut().zip(&seen.largest).zip(start);
+            for ((size, largest), x) in sizes {
                 if *x == 0.0 {
-                    *size = size.max(round(PART * later));
+                    *size *= round(PART * largest).max(1.0);
                 }
             }
         }
@@ -145,16 +145,9 @@ impl MotionUnits {
     /// Where a run from here ends, and the units that it shows; `None` where it fails.
     fn run(&self, system: &TextSystem, start: &Vector) -> Result<Option<(Vector, Self)>> {
         let field = self.field(system)?;
-        let tolerances = Tolerances::equal(ROUGH)?;
-        let mut integrator = AnyIntegrator::new(Choice::Auto, tolerances, 2 * STEPS)?;
-        let mut seen = Seen::of(start.len());
-        let mut observer = |step: &AnyStep<'_>| Ok(seen.see(step));
-        let start = self.inward(start);
-        let span = (0.0, FOREVER);
-        let end = integrator.flow(&field, span, &start, Some(&mut observer));
-        if end.is_err() || seen.steps == 0 {
+        let Some(seen) = self.watched(&field, start, FOREVER)? else {
             return Ok(None);
-        }
+        };
         let last = Vector::from_column_slice(&seen.last);
         let end = self.outward(&last);
         let seen = match seen.rests() {
@@ -169,6 +162,17 @@ impl MotionUnits {
             time: seen.time * self.time,
         };
         Ok(Some((end, measured)))
+    }
+
+    /// A run from here that lasts so long at most, in the field of these units; `None` where it fails.
+    fn watched(&self, field: &AnyField<'_>, start: &Vector, lasting: f64) -> Result<Option<Seen>> {
+        let tolerances = Tolerances::equal(ROUGH)?;
+        let mut integrator = AnyIntegrator::new(Choice::Auto, tolerances, 2 * STEPS)?;
+        let mut seen = Seen::of(start.len());
+        let mut observer = |step: &AnyStep<'_>| Ok(seen.see(step));
+        let span = (0.0, lasting);
+        let end = integrator.flow(field, span, &self.inward(start), Some(&mut observer));
+        Ok((end.is_ok() && seen.steps > 0).then_some(seen))
     }
 
     /// A time, in the system's own unit.

@@ -12,6 +12,8 @@ use crate::field::Vector;
 /// ln of what an arc of a new mesh may grow by, and one of an old mesh.
 const GROWTH: f64 = 5.0;
 const GROWN: f64 = 7.0;
+/// What two displacements that are the same may differ by, in parts of themselves.
+const AGREED: f64 = 0.25;
 /// A product of two slopes of the parameters that is no rounding.
 const SLOPES: f64 = 1e-12;
 /// How often arcs are split for it.
@@ -73,11 +75,15 @@ impl OrbitCurve<'_, '_> {
         let node = (node + count - first) % count;
         let parameters = direction.parameters;
         self.arrived(site, linear.beginning_at(first), |_, new| {
-            // The same direction has the same parameters, whatever the nodes; along a canard they are rounding.
+            // The same direction moves the orbit and the parameters in the same way, whatever the nodes. Along a canard the parameters are
+            // rounding, as on a vertical branch; and what the flow says may be rounding.
+            let (of_flow, new_moved) = (moved.dot(&new.nodes[node]), &new.nodes[node]);
+            let off = (&moved - new_moved * of_flow.signum()).norm();
             let of_parameters = product(&parameters, &new.parameters);
-            match of_parameters.abs() > SLOPES {
-                true => of_parameters,
-                false => moved.dot(&new.nodes[node]),
+            if off < AGREED * moved.norm().max(new_moved.norm()) || of_parameters.abs() < SLOPES {
+                of_flow
+            } else {
+                of_parameters
             }
         })
     }

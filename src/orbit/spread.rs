@@ -12,8 +12,10 @@ use crate::number::eigenvalues;
 
 /// The least and the largest number of nodes.
 const NODES: (usize, usize) = (12, 256);
-/// Where the steps are so long that fewer nodes have a place, these are spread evenly in time.
+/// Where the steps are so long that fewer nodes have a place, arcs are split; and where fewer still have one, nodes are spread evenly in time.
 const FEWEST: usize = 8;
+const FEW: usize = 3;
+
 /// How long arcs are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Spread {
@@ -151,7 +153,7 @@ impl ShootingNodes {
                 times.push(step.begin);
             }
         }
-        if nodes.len() < FEWEST {
+        if nodes.len() < FEW {
             let whole = ShootingNodes {
                 nodes: self.nodes[..1].to_vec(),
                 durations: vec![period],
@@ -161,7 +163,15 @@ impl ShootingNodes {
         let begin = times[0];
         let ends = times.iter().copied().skip(1).chain([begin + period]);
         let durations = times.iter().zip(ends).map(|(from, to)| to - from).collect();
-        Ok((ShootingNodes { nodes, durations }, begin))
+        let chosen = ShootingNodes { nodes, durations };
+        let count = chosen.nodes.len();
+        Ok(match count < FEWEST {
+            true => {
+                let parts = vec![FEWEST.div_ceil(count); count];
+                (chosen.split(tracer, field, &parts)?, begin)
+            }
+            false => (chosen, begin),
+        })
     }
 
     /// Whether the other orbit, with as many nodes, has about the same shape: no variable moves farther or less far by this factor, and the nodes

@@ -5,6 +5,11 @@ use twinslip::bifurcation::Special;
 use twinslip::field::{Jacobian, State, VectorField};
 use twinslip::integrate::{Integrator, MAX_STEPS, Taylor, Tolerances};
 
+fn precise() -> Taylor {
+    let tolerances = Tolerances::equal(1e-16).expect("tolerances");
+    Taylor::new(tolerances, MAX_STEPS).expect("a method")
+}
+
 /// The return map to the plane across the flow at a point of an orbit, in orthonormal coordinates there.
 struct ReturnMap<'a> {
     field: &'a dyn VectorField<3>,
@@ -21,10 +26,9 @@ impl<'a> ReturnMap<'a> {
         let least = along.iamin();
         let axis = State::<3>::from_fn(|i, _| f64::from(i == least));
         let second = (axis - along * along.dot(&axis)).normalize();
-        let tolerances = Tolerances::equal(1e-16).expect("tolerances");
         ReturnMap {
             field,
-            taylor: Taylor::new(tolerances, MAX_STEPS).expect("a method"),
+            taylor: precise(),
             origin,
             frame: Jacobian::<3>::from_columns(&[along, second, along.cross(&second)]),
             period,
@@ -62,9 +66,19 @@ impl<'a> ReturnMap<'a> {
 pub fn returns(field: &dyn VectorField<3>, special: &Special, beside: f64) -> (f64, f64) {
     const RETURNS: usize = 4000;
     const WINDOW: usize = 500;
+    const PLANES_PER_ARC: usize = 8;
     let (nodes, durations) = special.orbit.as_ref().expect("an orbit").nodes();
-    let run = |node: &Vec<f64>| {
-        let origin = State::<3>::from_fn(|i, _| node[i]);
+    let mut taylor = precise();
+    let mut origins = Vec::new();
+    for (node, duration) in nodes.iter().zip(&durations) {
+        let mut y = State::<3>::from_fn(|i, _| node[i]);
+        for _ in 0..PLANES_PER_ARC {
+            origins.push(y);
+            let span = (0.0, duration / PLANES_PER_ARC as f64);
+            y = taylor.flow(field, span, &y, None).expect("an arc");
+        }
+    }
+    let run = |&origin: &State<3>| {
         let mut map = ReturnMap::new(field, origin, durations.iter().sum());
         let mut x = Vector2::new(beside, 0.0);
         let mut distances = Vec::with_capacity(RETURNS);
@@ -78,5 +92,5 @@ pub fn returns(field: &dyn VectorField<3>, special: &Special, beside: f64) -> (f
             largest(&distances[RETURNS - WINDOW..]),
         ))
     };
-    nodes.iter().find_map(run).expect("a plane")
+    origins.iter().find_map(run).expect("a plane")
 }

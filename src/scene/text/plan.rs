@@ -145,7 +145,7 @@ impl TextPlan {
         let atol_is_given = options.numerics.atol.is_some();
         let units = match atol_is_given || model.slab.is_some() {
             true => MotionUnits::given(start.len()),
-            false => MotionUnits::beginning(&model.system, &start)?,
+            false => MotionUnits::beginning(&model.system, &start, until)?,
         };
         Ok(TextPlan {
             program,
