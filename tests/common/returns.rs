@@ -70,7 +70,7 @@ pub fn returns(field: &dyn VectorField<3>, special: &Special, beside: f64) -> (f
     let (nodes, durations) = special.orbit.as_ref().expect("an orbit").nodes();
     let mut taylor = precise();
     let mut origins = Vec::new();
-    for (node, duration) in nodes.iter().zip(&durations) {
+    for (node, duration) in nodes.iter().zip(durations) {
         let mut y = State::<3>::from_fn(|i, _| node[i]);
         for _ in 0..PLANES_PER_ARC {
             origins.push(y);
