@@ -143,7 +143,7 @@ pub fn close(tracer: &mut Tracer, field: &AnyField<'_>, guess: ShootingNodes) ->
 fn close_alone(tracer: &mut Tracer, field: &AnyField<'_>, guess: ShootingNodes) -> Result<Closed> {
     let mut shooting = guess;
     let mut linear = Linear::new(tracer, field, &shooting)?;
-    let mut last = f64::INFINITY;
+    let (mut last, mut part) = (f64::INFINITY, 1.0_f64);
     for iterations in 1..=ITERATIONS {
         let failed = |residual: f64| Error::NotConverged {
             what: "the periodic orbit",
@@ -170,7 +170,8 @@ fn close_alone(tracer: &mut Tracer, field: &AnyField<'_>, guess: ShootingNodes) 
             .map(|(dt, t)| (dt / t).abs());
         let stretch = of_durations.fold(0.0, f64::max);
         let size = of_nodes.max(of_period);
-        if size < CLOSED || (size < NOISE && size > 0.3 * last) {
+        // After a part of a correction the rest of it is no noise.
+        if size < CLOSED || (size < NOISE && size > 0.3 * last && part == 1.0) {
             return Ok(Closed {
                 shooting,
                 iterations,
@@ -180,7 +181,7 @@ fn close_alone(tracer: &mut Tracer, field: &AnyField<'_>, guess: ShootingNodes) 
             });
         }
         last = size;
-        let mut part = (TRUSTED / of_nodes.max(stretch)).min(1.0);
+        part = (TRUSTED / of_nodes.max(stretch)).min(1.0);
         let mut halvings = 0;
         linear = loop {
             let trial = shooting.moved(&nodes, &durations, part);

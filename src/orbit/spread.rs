@@ -132,10 +132,10 @@ impl ShootingNodes {
         let count = (all.ceil() as usize).clamp(NODES.0, NODES.1);
         let each = all / count as f64;
         let mut begins = std::iter::once(0.0).chain(ends).zip(&steps).peekable();
-        let (mut nodes, mut times) = (Vec::new(), Vec::new());
+        let (mut nodes, mut times, mut places) = (Vec::new(), Vec::new(), Vec::new());
         for k in 0..count {
             let middle = (k as f64 + 0.5) * each;
-            let mut best: Option<(f64, &TracedStep)> = None;
+            let mut best: Option<(f64, f64, &TracedStep)> = None;
             while let Some((at, step)) = begins.next_if(|(at, _)| *at < middle + ASIDE * each) {
                 let aside = (at - middle).abs() / each;
                 if aside > ASIDE {
@@ -143,14 +143,15 @@ impl ShootingNodes {
                 }
                 let corner = (CORNER / extents.radius(field, &step.from)).max(1.0);
                 let cost = corner * (1.0 + aside * aside);
-                if best.is_none_or(|(least, _)| cost < least) {
-                    best = Some((cost, step));
+                if best.is_none_or(|(least, ..)| cost < least) {
+                    best = Some((cost, at, step));
                 }
             }
             // A step of much measure takes the place of several arcs.
-            if let Some((_, step)) = best {
+            if let Some((_, at, step)) = best {
                 nodes.push(step.from.clone());
                 times.push(step.begin);
+                places.push(at);
             }
         }
         if nodes.len() < FEW {
@@ -164,14 +165,17 @@ impl ShootingNodes {
         let ends = times.iter().copied().skip(1).chain([begin + period]);
         let durations = times.iter().zip(ends).map(|(from, to)| to - from).collect();
         let chosen = ShootingNodes { nodes, durations };
-        let count = chosen.nodes.len();
-        Ok(match count < FEWEST {
-            true => {
-                let parts = vec![FEWEST.div_ceil(count); count];
-                (chosen.split(tracer, field, &parts)?, begin)
-            }
-            false => (chosen, begin),
-        })
+        if chosen.nodes.len() >= FEWEST {
+            return Ok((chosen, begin));
+        }
+        // Long arcs in more parts: short ones may last no longer than they are known to.
+        let next = places.iter().copied().skip(1).chain([places[0] + all]);
+        let parts = places.iter().zip(next).map(|(from, to)| {
+            let share = (to - from) / all;
+            (share * FEWEST as f64).ceil().max(1.0) as usize
+        });
+        let parts: Vec<usize> = parts.collect();
+        Ok((chosen.split(tracer, field, &parts)?, begin))
     }
 
     /// Whether the other orbit, with as many nodes, has about the same shape: no variable moves farther or less far by this factor, and the nodes
