@@ -34,6 +34,12 @@ pub trait ParametrisedField: Sync {
         flow
     }
 
+    /// Whether the planes of nodes lie between those across the flow and those across the flow as it is seen in the extents of the orbit. Planes across
+    /// the flow cut an orbit that is thin in one variable at any angle; those in its extents alone make steps shorter where it is not thin.
+    fn in_extents(&self) -> bool {
+        false
+    }
+
     /// What takes a displacement of a point x, where the flow is `flow`, to its part across the flow, in the variables in which
     /// displacements are measured.
     fn across(&self, _x: &Vector, flow: &Vector) -> Matrix {

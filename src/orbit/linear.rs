@@ -426,8 +426,27 @@ fn frames_of(
     field: &AnyField<'_>,
     shooting: &ShootingNodes,
 ) -> Vec<Matrix> {
-    let normal = |x: &Vector| frame(&family.normal(x, field.f(x)));
+    let extents = family.in_extents().then(|| extents_in_parts(shooting));
+    let normal = |x: &Vector| {
+        let normal = family.normal(x, field.f(x));
+        match &extents {
+            Some(extents) => frame(&normal.component_div(extents)),
+            None => frame(&normal),
+        }
+    };
     shooting.nodes.iter().map(normal).collect()
+}
+
+/// How far each variable moves, in parts of what the liveliest one does. What hardly moves beside the others, all in the units of the motion, moves by
+/// rounding.
+fn extents_in_parts(shooting: &ShootingNodes) -> Vector {
+    const LEAST: f64 = 0.01;
+    let values = |i: usize| shooting.nodes.iter().map(move |x| x[i]);
+    let extents = Vector::from_fn(shooting.dimension(), |i, _| {
+        values(i).fold(f64::NEG_INFINITY, f64::max) - values(i).fold(f64::INFINITY, f64::min)
+    });
+    let most = extents.amax();
+    extents.map(|extent| (extent / most).max(LEAST))
 }
 
 /// The columns of a frame that span the plane.

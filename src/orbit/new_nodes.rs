@@ -66,7 +66,7 @@ impl OrbitCurve<'_, '_> {
             linear = self.corrector.linear(&site)?;
         }
         drop(field);
-        let (node, moved) = self.carried(old, direction, (&site.shooting, begin))?;
+        let (node, moved) = self.carried(old, direction, (&site.shooting, begin), &linear)?;
         let scale = self.corrector.family.scale(site.at);
         let (_, along) = linear.solutions(&self.settings.free, scale)?;
         let first = most_moved(&along);
@@ -95,6 +95,7 @@ impl OrbitCurve<'_, '_> {
         old: &ContinuationPoint,
         direction: &TangentVector,
         (new, begin): (&ShootingNodes, f64),
+        linear: &Linear,
     ) -> Option<(usize, Vector)> {
         let most = most_moved(std::slice::from_ref(direction));
         let (period, durations) = (new.period(), &old.shooting.durations);
@@ -124,7 +125,7 @@ impl OrbitCurve<'_, '_> {
         }
         let node = &new.nodes[next];
         let flow = field.f(node);
-        let normal = family.normal(node, flow.clone());
+        let normal = linear.normal(next);
         let along = normal.dot(&moved) / normal.dot(&flow);
         moved.axpy(-along, &flow, 1.0);
         Some((next, moved))

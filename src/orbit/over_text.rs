@@ -131,6 +131,10 @@ impl ParametrisedField for OverText<'_> {
         [first, if same { 0.0 } else { second }]
     }
 
+    fn in_extents(&self) -> bool {
+        true
+    }
+
     fn units(&self) -> Option<&[f64]> {
         let sizes = self.system.sizes();
         sizes.iter().any(|size| *size != 1.0).then_some(sizes)

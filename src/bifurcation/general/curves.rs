@@ -136,6 +136,10 @@ impl ParametrisedField for Exchanged<'_> {
         self.0.normal(x, flow)
     }
 
+    fn in_extents(&self) -> bool {
+        self.0.in_extents()
+    }
+
     fn across(&self, x: &Vector, flow: &Vector) -> Matrix {
         self.0.across(x, flow)
     }
