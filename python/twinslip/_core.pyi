@@ -1,4 +1,4 @@
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from os import PathLike
 from typing import Any, Optional, Union, final
 
@@ -55,6 +55,7 @@ class IvpRun:
     def y(self) -> npt.NDArray[np.float64]: ...
     def t_events(self) -> list[npt.NDArray[np.float64]]: ...
     def y_events(self) -> list[npt.NDArray[np.float64]]: ...
+    def undecided(self) -> list[bool]: ...
     def solution(self) -> Optional[Solution]: ...
 
 @final
@@ -78,7 +79,9 @@ def solve_ivp(
     span: tuple[float, float],
     start: list[float],
     times: Optional[list[float]],
-    events: list[tuple[Callable[..., Any], float, Optional[int]]],
+    events: Sequence[
+        tuple[Union[str, Callable[..., Any]], float, Optional[int], Optional[float]]
+    ],
     dense_output: bool,
 ) -> tuple[Optional[IvpRun], Optional[tuple[Optional[str], str]], Optional[BaseException]]: ...
 def timed(words: list[str], repeats: int) -> float: ...

@@ -52,6 +52,8 @@ class Formulas:
 
     def __init__(self) -> None:
         self.operations: list[Operation] = []
+        #: Decides comparisons of two symbols, by the name of the operator; without it there are none.
+        self.decide: Callable[[str, Symbol, Symbol], bool] | None = None
         self._places: dict[tuple[Any, ...], int] = {}
 
     def _place(self, key: tuple[Any, ...], operation: Operation) -> Symbol:
@@ -108,6 +110,12 @@ class Formulas:
                 f"x[{value!r}] and p[{value!r}]"
             )
         return None
+
+    def compared(self, operator: str, a: object, b: object) -> bool:
+        """Whether a comparison of symbols or numbers holds."""
+        if self.decide is None:
+            raise TypeError(NO_CHOICE)
+        return self.decide(operator, self.needed(a), self.needed(b))
 
     def needed(self, value: object) -> Symbol:
         """A symbol or number as a symbol."""
@@ -207,6 +215,17 @@ def _power(a: Symbol, b: Symbol) -> Symbol:
     return a.formulas.made("^", a, b)
 
 
+def _compared(operator: str) -> Any:
+    """A method that compares with another one, where something decides that."""
+
+    def method(self: Symbol, other: object) -> Any:
+        if isinstance(other, np.ndarray) and other.ndim > 0:
+            return NotImplemented
+        return self.formulas.compared(operator, self, other)
+
+    return method
+
+
 def _refused(sentence: str) -> Any:
     """A method of any arguments that is none for symbols."""
 
@@ -293,12 +312,12 @@ class Symbol:
         return lower if largest is None else lower.minimum(largest)
 
     __bool__ = _refused(NO_CHOICE)
-    __lt__ = _refused(NO_CHOICE)
-    __le__ = _refused(NO_CHOICE)
-    __gt__ = _refused(NO_CHOICE)
-    __ge__ = _refused(NO_CHOICE)
-    __eq__ = _refused(NO_CHOICE)
-    __ne__ = _refused(NO_CHOICE)
+    __lt__ = _compared("<")
+    __le__ = _compared("<=")
+    __gt__ = _compared(">")
+    __ge__ = _compared(">=")
+    __eq__ = _compared("==")
+    __ne__ = _compared("!=")
     __hash__ = object.__hash__
 
     __float__ = _refused(NO_NUMBER)

@@ -109,17 +109,30 @@ for other, usual in (("conjugate", "positive"), ("degrees", "rad2deg"), ("radian
     FUNCTIONS[other] = FUNCTIONS[usual]
 
 _COMPARISONS = {
-    "equal",
-    "greater",
-    "greater_equal",
-    "less",
-    "less_equal",
-    "logical_and",
-    "logical_not",
-    "logical_or",
-    "logical_xor",
-    "not_equal",
+    "equal": "==",
+    "greater": ">",
+    "greater_equal": ">=",
+    "less": "<",
+    "less_equal": "<=",
+    "not_equal": "!=",
 }
+#: What is decided by whether a symbol is 0.
+_LOGIC = {"logical_and", "logical_not", "logical_or", "logical_xor"}
+
+
+def _sign(a: Symbol) -> Symbol:
+    return a.formulas.number(1.0 if a > 0.0 else -1.0 if a < 0.0 else 0.0)
+
+
+def _heaviside(a: Symbol, at_zero: Symbol) -> Symbol:
+    if a > 0.0:
+        return a.formulas.number(1.0)
+    return a.formulas.number(0.0) if a < 0.0 else at_zero
+
+
+#: Those that jump, where something decides on which side they are.
+_CHOICES: dict[str, Callable[..., Symbol]] = {"heaviside": _heaviside, "sign": _sign}
+
 _NO_ARRAY = (
     "a symbol has no value, and so no place in an array of numbers: make the array with "
     "dtype=object"
@@ -142,15 +155,18 @@ def applied(ufunc: np.ufunc, method: str, inputs: tuple[Any, ...], options: dict
         For a function that no formula has.
     """
     name = ufunc.__name__
-    if name in _COMPARISONS:
+    if name in _LOGIC:
         raise TypeError(NO_CHOICE)
-    function = FUNCTIONS.get(name)
+    formulas = next(value.formulas for value in inputs if isinstance(value, Symbol))
+    if name in _COMPARISONS:
+        return _decided(_COMPARISONS[name], formulas, inputs)
+    choices = {} if formulas.decide is None else _CHOICES
+    function = choices.get(name, FUNCTIONS.get(name))
     outputs = options.pop("out", ())
     if function is None or method != "__call__" or options:
         way = name if method == "__call__" else f"{name}.{method}"
         known = ", ".join(sorted(FUNCTIONS))
         raise TypeError(f"np.{way} of a symbol can't stand in a formula, there are {known}")
-    formulas = next(value.formulas for value in inputs if isinstance(value, Symbol))
     made = _broadcast(function, formulas, inputs)
     for output in outputs:
         if output.dtype != object:
@@ -158,6 +174,17 @@ def applied(ufunc: np.ufunc, method: str, inputs: tuple[Any, ...], options: dict
         output[...] = made
         return output
     return made
+
+
+def _decided(operator: str, formulas: Formulas, inputs: tuple[Any, ...]) -> Any:
+    """A comparison, element by element."""
+    a, b = (np.asarray(value, dtype=object) for value in inputs)
+
+    def of_two(one: object, other: object) -> bool:
+        return formulas.compared(operator, one, other)
+
+    made = np.frompyfunc(of_two, 2, 1)(a, b)
+    return made if isinstance(made, bool) else np.asarray(made, dtype=bool)
 
 
 def _broadcast(function: Callable[..., Symbol], formulas: Formulas, inputs: tuple[Any, ...]) -> Any:

@@ -1,0 +1,409 @@
+"""Initial value problems of functions in SciPy's form: traced, and run from one change of their comparisons to the next."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Sequence
+from typing import Any, Callable, NamedTuple, Optional, cast
+
+import numpy as np
+
+from . import _core
+from ._errors import InputError, Interrupted
+from ._events import Asked, AskedEvent, sampled_note, traced_event
+from ._function import Array, Function, Side, Traced, differs
+from ._ivp_result import MESSAGES, Constant, IvpResult, Joined, OdeSolution, refusal
+from .system import System
+
+#: SciPy's methods, and the nearest of ours.
+METHODS = {
+    "RK23": "taylor",
+    "RK45": "taylor",
+    "DOP853": "taylor",
+    "Radau": "auto",
+    "BDF": "auto",
+    "LSODA": "auto",
+}
+#: Those that look at the Jacobian, and what they are where the problem is stiff from its start.
+IMPLICIT = {"Radau": "rodas5p", "BDF": "rodas5p"}
+#: A problem is stiff from its start where what decays fastest does so as many times within the span.
+_STIFF = 1e4
+#: As far as a span without an end goes.
+_FOREVER = 1e300
+#: Comparisons change no more often than this without any time between them, for each of them.
+_MOST_TURNS = 2
+
+
+class Numerics(NamedTuple):
+    """How a problem is solved, as it is asked."""
+
+    method: str
+    rtol: float
+    atol: Any
+    max_step: Optional[float]
+    max_steps: Optional[int]
+    first_step: Optional[float]
+
+
+class Rows:
+    """What a run has given so far."""
+
+    def __init__(self, events: int, count: int) -> None:
+        self.t: list[Array] = []
+        self.y: list[Array] = []
+        self.t_events: list[list[float]] = [[] for _ in range(events)]
+        self.y_events: list[list[Array]] = [[] for _ in range(events)]
+        self.pieces: list[_core.Solution] = []
+        self.work = np.zeros(3, dtype=int)
+        self.undecided = [False] * events
+        self.count = count
+
+    def add(self, run: _core.IvpRun, units: Array, chosen: bool) -> None:
+        """One part of the run, with its rows, which begin where the last one ended, and its events."""
+        t, y = run.t(), run.y().reshape(-1, run.dimension)[:, : self.count] * units
+        again = 1 if self.t and not chosen else 0
+        self.t.append(t[again:])
+        self.y.append(y[again:])
+        solution = run.solution()
+        if solution is not None:
+            self.pieces.append(solution)
+        self.work += run.work
+        found = zip(run.t_events(), run.y_events(), run.undecided())
+        for i, (times, values, undecided) in enumerate(found):
+            if i >= len(self.t_events):
+                break
+            values = values.reshape(-1, run.dimension)[:, : self.count] * units
+            for time, value in zip(times.tolist(), values):
+                # What ends one part is not found again as the beginning of the next one.
+                last = self.t_events[i][-1] if self.t_events[i] else None
+                if last is None or len(self.t) == 1 or abs(time - last) > 1e-14 * abs(time):
+                    self.t_events[i].append(time)
+                    self.y_events[i].append(value)
+            self.undecided[i] |= undecided
+
+
+def solve_function(
+    fun: Callable[..., Any],
+    span: tuple[float, float],
+    y0: Sequence[float],
+    times: Optional[list[float]],
+    asked: Optional[list[AskedEvent]],
+    args: tuple[Any, ...],
+    numerics: Numerics,
+    dense_output: bool,
+    vectorized: bool,
+    constant_jacobian: bool,
+) -> IvpResult:
+    """Solves the problem of a function: :func:`twinslip.solve_ivp`."""
+    if not y0 or span[0] == span[1]:
+        return _still(span, y0, times, asked, dense_output)
+    atol, units = tolerances(numerics.atol, len(y0))
+    function = Function(fun, args, len(y0), units, vectorized)
+    problem = _Problem(function, span, y0, times, asked or [], numerics, atol, dense_output)
+    result = problem.solve(asked is not None)
+    if constant_jacobian:
+        # As in SciPy: what is given once is not evaluated.
+        result["njev"] = 0
+    return result
+
+
+def tolerances(atol: Any, count: int) -> tuple[Optional[float], list[float]]:
+    """One absolute tolerance for all states, and the units of the states in which it is theirs.
+
+    The units are powers of two, so that no value is rounded: a state's tolerance is no larger than what is asked, and no less than half
+    of that.
+    """
+    if atol is None or np.ndim(atol) == 0:
+        return (None if atol is None else atol), [1.0] * count
+    try:
+        each = np.asarray(atol, dtype=np.float64)
+    except (TypeError, ValueError):
+        each = np.full(0, np.nan)
+    if each.shape != (count,) or not (np.isfinite(each).all() and (each >= 0).all()):
+        raise InputError(
+            f"atol is {atol!r}, but must be a number or {count} numbers, one for each value of y0, none of them negative",
+            "atol",
+        )
+    most = float(each.max())
+    if most == 0.0:
+        return 0.0, [1.0] * count
+    # Of a state whose tolerance is 0 it is so small that its relative one is all that counts.
+    least = 2.0**-200
+    return most, [2.0 ** math.floor(math.log2(max(one / most, least))) for one in each]
+
+
+class _Problem:
+    def __init__(
+        self,
+        function: Function,
+        span: tuple[float, float],
+        y0: Sequence[float],
+        times: Optional[list[float]],
+        asked: list[AskedEvent],
+        numerics: Numerics,
+        atol: Optional[float],
+        dense_output: bool,
+    ) -> None:
+        self.function, self.times, self.asked = function, times, asked
+        self.numerics, self.atol, self.dense = numerics, atol, dense_output
+        self.t, self.y = span[0], list(y0)
+        end = math.copysign(_FOREVER, span[1]) if math.isinf(span[1]) else span[1]
+        self.way = 1.0 if end > self.t else -1.0
+        self.ends = [end]
+        # Rows at chosen times are the same whatever the steps are.
+        first = numerics.first_step if times is None else None
+        if first is not None and first < abs(end - self.t):
+            self.ends.insert(0, self.t + self.way * first)
+        self.length = abs(end - self.t)
+        self.units = np.array(function.units)
+        self.rows = Rows(len(asked), function.count)
+        self.systems: dict[tuple[int, ...], tuple[list[str], bool]] = {}
+        self.checked = False
+        self.events: list[Asked] = []
+        self.method = numerics.method
+        self.looked = 0
+
+    def solve(self, has_events: bool) -> IvpResult:
+        """Runs from one change of a comparison to the next, until the end."""
+        forced: dict[int, float] = {}
+        still: dict[int, int] = {}
+        status, failure = 0, None
+        while self.ends:
+            traced = self.function.traced(self.t, self.y, forced)
+            if not self.checked:
+                self._begin(traced)
+            stuck = self._stuck(traced, forced)
+            if stuck is not None:
+                status, failure = -1, stuck
+                break
+            run, raised = self._run(traced)
+            self.rows.add(run, self.units, self.times is not None)
+            if raised is not None:
+                if isinstance(raised, KeyboardInterrupt):
+                    told = "interrupted; what was computed is in the result"
+                    raise Interrupted(
+                        told, self._result(-1, run.failure, has_events)
+                    ) from None
+                raise raised
+            if run.status < 0:
+                status, failure = -1, run.failure
+                break
+            ended = self._ended_by(run, traced.sides)
+            if run.status == 1 and ended is None:
+                status = 1
+                break
+            if ended is None:
+                self._arrive(self.ends.pop(0))
+                forced = {}
+                continue
+            side, time, values = ended
+            moved = abs(time - self.t) > 4 * np.finfo(float).eps * abs(time)
+            still = {} if moved else still
+            still[side.place] = still.get(side.place, 0) + 1
+            self.t, self.y = time, values
+            forced = {side.place: -side.side}
+            if still[side.place] > _MOST_TURNS:
+                status, failure = -1, self._no_way()
+                break
+            if self.t == self.ends[0]:
+                self.ends.pop(0)
+        return self._result(status, failure, has_events)
+
+    def _begin(self, traced: Traced) -> None:
+        """Checks the formulas against the function, and finds those of the events and the method."""
+        self.checked = True
+        function = self.function
+        point = function.point(self.t, self.y)
+        given = np.array(self.y)
+        with np.errstate(all="ignore"):
+            made = function.fun(
+                self.t, given[:, np.newaxis] if function.vectorized else given, *function.args
+            )
+        ours = [point.value(place) * unit for place, unit in zip(traced.rates, function.units)]
+        theirs = np.asarray(made).reshape(-1)
+        if np.iscomplexobj(theirs) or differs(ours, theirs):
+            raise InputError(
+                f"fun gives {theirs.tolist()} at t = {self.t}, but {[float(rate) for rate in ours]} by what it does with symbols: "
+                "it must give the same whenever it is called, of t and y alone",
+                "fun",
+            )
+        self.events = [traced_event(function, one, self.t, given) for one in self.asked]
+        name = self.numerics.method
+        self.method = METHODS.get(name, name)
+        if name in IMPLICIT:
+            self.looked = 1
+            if self._is_stiff(traced):
+                self.method = IMPLICIT[name]
+
+    def _is_stiff(self, traced: Traced) -> bool:
+        """Whether something decays many times within the span, by the Jacobian at the start."""
+        n = self.function.count
+        jacobian = np.zeros((n, n))
+        for j in range(n):
+            along = [float(i == j) for i in range(n)]
+            point = self.function.point(self.t, self.y, along)
+            jacobian[:, j] = [
+                point.slope(place) * unit for place, unit in zip(traced.rates, self.units)
+            ]
+        if not np.isfinite(jacobian).all():
+            return False
+        decays = -self.way * np.linalg.eigvals(jacobian).real
+        return bool(decays.max() * self.length > _STIFF)
+
+    def _system(self, traced: Traced) -> tuple[list[str], bool]:
+        """The words of the system with these rates, and whether time is its last state."""
+        key = tuple(traced.rates)
+        if key not in self.systems:
+            timed = self.function.of_time(traced.rates)
+            system = System(system=self.function.text(traced.rates, timed))
+            numerics = self.numerics
+            words = system._solver_words(
+                self.method, numerics.rtol, self.atol, numerics.max_step, numerics.max_steps
+            )
+            self.systems[key] = words, timed
+        return self.systems[key]
+
+    def _run(self, traced: Traced) -> tuple[_core.IvpRun, Optional[BaseException]]:
+        words, timed = self._system(traced)
+        start = [*(np.array(self.y) / self.units).tolist(), *([self.t] if timed else [])]
+        values = len(start)
+        told: list[Any] = []
+        for i, (event, asked) in enumerate(zip(self.events, self.asked)):
+            most = None if asked.most is None else asked.most - len(self.rows.t_events[i])
+            told.append((event.given(values), asked.way, most, None))
+        for side in traced.sides:
+            text = self.function.formula(side.place, values)
+            if text is None:
+                raise InputError(
+                    f"y0 has {len(self.y)} values, but must have one less where `fun` compares what depends on t", "y0"
+                )
+            told.append((text, 0.0, 1, side.side))
+        times = self._due()
+        run, refused, raised = _core.solve_ivp(
+            words, (self.t, self.ends[0]), start, times, told, self.dense
+        )
+        if refused is not None:
+            raise refusal(*refused)
+        assert run is not None
+        return run, raised
+
+    def _due(self) -> Optional[list[float]]:
+        """The times that are asked for up to the end of this part."""
+        if self.times is None:
+            return None
+        first, rest = bool(not self.rows.t), []
+        for time in self.times:
+            since, until = self.way * (time - self.t), self.way * (self.ends[0] - time)
+            if (since > 0 or (first and since == 0)) and until >= 0:
+                rest.append(time)
+        return rest
+
+    def _ended_by(
+        self, run: _core.IvpRun, sides: list[Side]
+    ) -> Optional[tuple[Side, float, list[float]]]:
+        """What changed its side at the end of a part, with the time and the values there; None where nothing did."""
+        times, values = run.t_events(), run.y_events()
+        first = len(self.asked)
+        for side, at, y in zip(sides, times[first:], values[first:]):
+            if len(at) > 0:
+                y = y.reshape(-1, run.dimension)[0, : len(self.y)] * self.units
+                return side, float(at[0]), y.tolist()
+        return None
+
+    def _arrive(self, end: float) -> None:
+        """At the end of a part that nothing ended."""
+        self.t = end
+        if self.ends:
+            self.y = self.rows.y[-1][-1].tolist()
+
+    def _stuck(self, traced: Traced, forced: dict[int, float]) -> Optional[str]:
+        """Why it can't go on, where what has changed its side is led back at once."""
+        point = self.function.point(self.t, self.y)
+        rates = [point.value(place) * unit for place, unit in zip(traced.rates, self.units)]
+        point = self.function.point(self.t, self.y, rates)
+        for place, side in forced.items():
+            if any(one.place == place for one in traced.sides):
+                if self.way * point.slope(place) * side < 0.0:
+                    return self._no_way()
+        return None
+
+    def _no_way(self) -> str:
+        return (
+            f"at t = {self.t} what `fun` compares is 0, and its rates lead there from both sides: where it is to stay there, use a smooth "
+            "form, such as np.tanh(x/width)"
+        )
+
+    def _result(self, status: int, failure: Optional[str], has_events: bool) -> IvpResult:
+        rows, n = self.rows, self.function.count
+        t = np.concatenate(rows.t) if rows.t else np.array([self.t])
+        y = np.concatenate(rows.y) if rows.y else np.array([self.y])
+        message = MESSAGES[status] if status in MESSAGES else str(failure)
+        notes = []
+        name = self.numerics.method
+        if status != 1 and name in METHODS:
+            notes.append(f"`{self.method}` ran in place of {name}.")
+        notes += [note for i, one in enumerate(self.events) if (note := sampled_note(i, one, rows.undecided[i]))]
+        if notes and not message.endswith((".", "!", "?")):
+            message += "."
+        sol = None
+        if self.dense and rows.pieces:
+            sol = OdeSolution(Joined(rows.pieces, n, self.function.units))
+        empty: Any = []
+        return IvpResult(
+            # SciPy has empty lists where none of the times was reached, which are false.
+            t=t if t.size else cast(Array, empty),
+            y=y.T if t.size else cast(Array, empty),
+            sol=sol,
+            t_events=[np.array(one) for one in rows.t_events] if has_events else None,
+            y_events=[np.array(one) for one in rows.y_events] if has_events else None,
+            nfev=int(rows.work[0]),
+            njev=int(rows.work[1]) + self.looked,
+            nlu=int(rows.work[2]) + self.looked,
+            status=status,
+            message=" ".join([message, *notes]),
+            success=status >= 0,
+        )
+
+
+def _still(
+    span: tuple[float, float],
+    y0: Sequence[float],
+    times: Optional[list[float]],
+    asked: Optional[list[AskedEvent]],
+    dense_output: bool,
+) -> IvpResult:
+    """Where nothing moves: there are no values, or no time for them."""
+    t = np.array(list(span) if times is None else times, dtype=np.float64)
+    none = None if asked is None else [np.empty(0) for _ in asked]
+    return IvpResult(
+        t=t,
+        y=np.repeat(np.array(y0, dtype=np.float64)[:, np.newaxis], len(t), axis=1),
+        sol=OdeSolution(Constant(span, y0)) if dense_output else None,
+        t_events=none,
+        y_events=None if none is None else [one.copy() for one in none],
+        nfev=0,
+        njev=0,
+        nlu=0,
+        status=0,
+        message=MESSAGES[0],
+        success=True,
+    )
+
+
+def least_rtol(rtol: Any) -> float:
+    """The smallest of the relative tolerances, which holds for all states; too small ones are raised, as in SciPy."""
+    least = float(np.finfo(float).eps)
+    try:
+        each = np.asarray(rtol, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError(f"rtol is {rtol!r}, but must be a number or one for each value of y0", "rtol") from None
+    if each.size == 0 or not (each >= 0).all():
+        raise InputError(f"rtol is {rtol!r}, but must be positive", "rtol")
+    if (each < least).any():
+        warnings.warn(
+            f"At least one element of `rtol` is too small. Setting `rtol = np.maximum(rtol, {least})`.",
+            UserWarning,
+            stacklevel=3,
+        )
+    return float(np.maximum(each, least).min())
