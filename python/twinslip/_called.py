@@ -12,12 +12,17 @@ from typing import Any, Callable
 import numpy as np
 
 from ._errors import InputError
-from ._symbols import Symbol
+from ._symbols import NO_NUMBER, Symbol
 
 #: Where the frames of numpy and of this package are: a function of the user's is not among them.
 _OTHERS = tuple(os.path.dirname(os.path.abspath(file)) for file in (np.__file__, __file__))
 #: What symbols in place of numbers may raise.
 _BLAMED = (AssertionError, AttributeError, IndexError, TypeError, ValueError)
+_NO_NUMBER = (
+    "what is done there needs a number where there is a symbol, which has no value: use arithmetic, "
+    "comparisons, np.where and numpy's functions of each element, or integrate it with "
+    "scipy.integrate.solve_ivp"
+)
 _INSTEAD = (
     "it is called with symbols in place of numbers, so write it with arithmetic, comparisons and "
     "numpy's functions, or integrate it with scipy.integrate.solve_ivp"
@@ -70,7 +75,9 @@ def refused(what: str, error: Exception) -> Untraced:
     told = str(error)
     told = told[3:] if told.startswith("f: ") else told
     told = " ".join(told.split()) or type(error).__name__
-    if "symbol" not in told or "use" not in told:
+    if told == NO_NUMBER:
+        told = _NO_NUMBER
+    elif "use" not in told:
         told = f"{told}; {_INSTEAD}"
     return Untraced(f"{what} can't be traced{where}: {told}", what, error)
 
@@ -93,7 +100,7 @@ def _has_symbols(values: Any) -> bool:
     if isinstance(values, Symbol):
         return True
     if isinstance(values, np.ndarray):
-        return values.dtype == object
+        return bool(values.dtype == object)
     return isinstance(values, (list, tuple)) and any(map(_has_symbols, values))
 
 
@@ -176,14 +183,11 @@ def _other(value: Any, namespace: dict[str, Any], made: dict[str, Any]) -> Any:
     if isinstance(value, types.BuiltinFunctionType):
         if value.__module__ == "math" and value.__name__ in _MATH:
             return _MATH[value.__name__]
-        for name in _NUMPY:
-            if value is getattr(np, name):
-                return _NUMPY[name]
-    if isinstance(value, types.FunctionType):
-        if value.__globals__ is namespace:
-            return _function(value, namespace, made)
-        if getattr(np, value.__name__, None) is value and value.__name__ in _NUMPY:
-            return _NUMPY[value.__name__]
+    if isinstance(value, types.FunctionType) and value.__globals__ is namespace:
+        return _function(value, namespace, made)
+    for name, other in _NUMPY.items():
+        if value is getattr(np, name):
+            return other
     return value
 
 

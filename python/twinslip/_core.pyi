@@ -79,9 +79,7 @@ def solve_ivp(
     span: tuple[float, float],
     start: list[float],
     times: Optional[list[float]],
-    events: Sequence[
-        tuple[Union[str, Callable[..., Any]], float, Optional[int], Optional[float]]
-    ],
+    events: Sequence[tuple[Union[str, Callable[..., Any]], float, Optional[int], Optional[float]]],
     dense_output: bool,
 ) -> tuple[Optional[IvpRun], Optional[tuple[Optional[str], str]], Optional[BaseException]]: ...
 def timed(words: list[str], repeats: int) -> float: ...

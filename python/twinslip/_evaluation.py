@@ -43,7 +43,7 @@ class Point:
         self._formulas = formulas
         self._values = values
         self._slopes = {} if slopes is None else slopes
-        self._known: list[Dual] = []
+        self._known: dict[int, Dual] = {}
 
     def value(self, place: int) -> float:
         """The value of the operation at this place; what is no number is not refused."""
@@ -54,10 +54,19 @@ class Point:
         return self._at(place)[1]
 
     def _at(self, place: int) -> Dual:
+        operations, known = self._formulas.operations, self._known
+        waiting = [place]
         with np.errstate(all="ignore"):
-            for operation in self._formulas.operations[len(self._known) : place + 1]:
-                self._known.append(self._of(operation))
-        return self._known[place]
+            while waiting:
+                last = waiting[-1]
+                missing = [one for one in operations[last].operands if one not in known]
+                if last in known or not missing:
+                    waiting.pop()
+                    if last not in known:
+                        known[last] = self._of(operations[last])
+                else:
+                    waiting.extend(missing)
+        return known[place]
 
     def _of(self, operation: Operation) -> Dual:
         kind = operation.kind

@@ -92,9 +92,7 @@ def traced_for_system(asked: AskedEvent, more: tuple[Any, ...], count: int) -> G
 def sampled_note(i: int, event: Asked, undecided: bool) -> str:
     """What is to be said of an event whose zeros are not all isolated."""
     if event.reason is not None:
-        return (
-            f"Event {i} was only looked at within steps, where zeros close to each other may be missed, as {event.reason}."
-        )
+        return f"Event {i} was only looked at within steps, where zeros close to each other may be missed, as {event.reason}."
     if undecided:
         return f"Event {i} was in part only looked at within steps, where zeros close to each other may be missed, as there are too many."
     return ""

@@ -9,10 +9,11 @@ from typing import Any, Callable, NamedTuple, Optional
 import numpy as np
 import numpy.typing as npt
 
-from ._called import refused, with_symbols
+from ._called import Untraced, refused, with_symbols
+from ._decisions import Decisions
 from ._errors import InputError
 from ._evaluation import Point
-from ._symbols import NO_CHOICE, Formulas, Symbol
+from ._symbols import Formulas, Symbol
 from ._text import definitions, quoted
 from ._trace import LONGEST, MOST_ENTRIES, MOST_STATES
 
@@ -20,6 +21,8 @@ Array = npt.NDArray[np.float64]
 
 #: What time is called in formulas.
 TIME = "t"
+#: Of all traces together, as each change of a comparison makes some more.
+MOST_OPERATIONS = 200_000
 #: A formula and a number are the same up to this part of them.
 _SAME = 1e-6
 
@@ -51,14 +54,15 @@ class Function:
     ) -> None:
         if count > MOST_STATES:
             raise InputError(
-                f"y0 has {count} values, but must have 1 to {MOST_STATES} where a function is traced", "y0"
+                f"y0 has {count} values, but must have 1 to {MOST_STATES} where a function is traced",
+                "y0",
             )
         self.fun = fun
         self.args = args
         self.count = count
         self.units = tuple(units)
         self.vectorized = vectorized
-        self.formulas = Formulas()
+        self.formulas = Formulas(MOST_OPERATIONS)
         self.names = tuple(f"y{i}" for i in range(count))
         self.time = self.formulas.named(TIME)
         named = [self.formulas.named(name) for name in self.names]
@@ -79,47 +83,29 @@ class Function:
 
     def traced(self, t: float, y: Sequence[float], forced: dict[int, float]) -> Traced:
         """The rates as they are at a point, where some operations are on sides that are known."""
-        point = self.point(t, y)
-        sides: dict[int, float] = {}
-
-        def decide(operator: str, a: Symbol, b: Symbol) -> bool:
-            turned = a.place > b.place
-            difference: Symbol = b - a if turned else a - b
-            known = difference.known()
-            value = point.value(difference.place) if known is None else known
-            value = float(-value if turned else value)
-            if operator in ("==", "!="):
-                if value == 0.0 and known is None:
-                    raise TypeError(NO_CHOICE)
-                return (value == 0.0) == (operator == "==")
-            if value != value:
-                raise ValueError("what is compared is not a number where the solution is")
-            rises = operator in (">", ">=")
-            if known is not None:
-                holds = value > 0.0 if rises else value < 0.0
-                return holds or (value == 0.0 and operator.endswith("="))
-            side = sides.get(difference.place)
-            if side is None and difference.place in forced:
-                side = forced[difference.place]
-            if side is not None:
-                side = -side if turned else side
-            elif value != 0.0:
-                side = 1.0 if value > 0.0 else -1.0
-            else:
-                side = 1.0 if operator in (">=", "<") else -1.0
-            sides[difference.place] = -side if turned else side
-            return (side > 0.0) == rises
-
-        self.formulas.decide = decide
+        decisions = Decisions(self.point(t, y), forced)
+        self.formulas.decisions = decisions
         try:
             states = self.symbols()
             given = states[:, np.newaxis] if self.vectorized else states
             made = with_symbols("fun", self.fun, (self.time, given, *self.args))
+        except Untraced:
+            # What it raises of numbers as well is no matter of symbols.
+            self.numbers(t, y)
+            raise
         finally:
-            self.formulas.decide = None
+            self.formulas.decisions = None
         rates = self._rates(made)
         scaled: list[Symbol] = [rate / unit for rate, unit in zip(rates, self.units)]
-        return Traced([rate.place for rate in scaled], [Side(*one) for one in sides.items()])
+        return Traced(
+            [rate.place for rate in scaled], [Side(*one) for one in decisions.sides.items()]
+        )
+
+    def numbers(self, t: float, y: Sequence[float]) -> Any:
+        """What the function gives for numbers."""
+        values = np.array(y, dtype=np.float64)
+        with np.errstate(all="ignore"):
+            return self.fun(t, values[:, np.newaxis] if self.vectorized else values, *self.args)
 
     def _rates(self, made: Any) -> list[Symbol]:
         if isinstance(made, (Symbol, numbers.Real)) and self.count == 1:
@@ -131,14 +117,17 @@ class Function:
         rates = list(array.reshape(-1) if self.vectorized else array)
         if array.size != self.count or len(rates) != self.count:
             raise InputError(
-                f"fun gives an array of shape {array.shape}, but must give {self.count} rates, one for each value of y0", "fun"
+                f"fun gives an array of shape {array.shape}, but must give {self.count} rates, one for each value of y0",
+                "fun",
             )
         symbols = []
         for i, rate in enumerate(rates):
             try:
                 symbol = self.formulas.symbol(rate)
             except (ValueError, TypeError) as error:
-                raise InputError(f"fun gives as rate {i} {error}".replace("f: ", ""), "fun") from error
+                raise InputError(
+                    f"fun gives as rate {i} {error}".replace("f: ", ""), "fun"
+                ) from error
             if symbol is None:
                 raise InputError(
                     f"fun gives as rate {i} {rate!r}, but must give real numbers", "fun"
@@ -175,7 +164,8 @@ class Function:
         names = (*self.names, TIME) if timed else self.names
         if len(names) > MOST_STATES:
             raise InputError(
-                f"y0 has {self.count} values, but must have 1 to {MOST_STATES - 1} where rates depend on t", "y0"
+                f"y0 has {self.count} values, but must have 1 to {MOST_STATES - 1} where rates depend on t",
+                "y0",
             )
         texts, defined = definitions(self.formulas, list(places), {*self.names, TIME}, MOST_ENTRIES)
         texts += ["1"] * (len(names) - len(texts))
@@ -186,7 +176,8 @@ class Function:
         text = "\n".join(lines) + "\n"
         if len(text) > LONGEST:
             raise InputError(
-                f"fun has formulas of {len(text)} bytes, but must have no more than {LONGEST}", "fun"
+                f"fun has formulas of {len(text)} bytes, but must have no more than {LONGEST}",
+                "fun",
             )
         return text
 

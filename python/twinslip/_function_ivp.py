@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-import warnings
-from collections.abc import Sequence
-from typing import Any, Callable, NamedTuple, Optional, cast
+from typing import Any, Optional, cast
 
 import numpy as np
 
 from . import _core
 from ._errors import InputError, Interrupted
-from ._events import Asked, AskedEvent, sampled_note, traced_event
+from ._events import Asked, sampled_note, traced_event
 from ._function import Array, Function, Side, Traced, differs
+from ._function_input import Problem, tolerances
 from ._ivp_result import MESSAGES, Constant, IvpResult, Joined, OdeSolution, refusal
 from .system import System
 
@@ -31,19 +30,10 @@ IMPLICIT = {"Radau": "rodas5p", "BDF": "rodas5p"}
 _STIFF = 1e4
 #: As far as a span without an end goes.
 _FOREVER = 1e300
-#: Comparisons change no more often than this without any time between them, for each of them.
+#: Zeros at times no more apart are at one time, as far as their isolation can tell, in units of 1 and the time together.
+_AT_ONCE = 16 * float(np.finfo(float).eps)
+#: No comparison changes more often at one time.
 _MOST_TURNS = 2
-
-
-class Numerics(NamedTuple):
-    """How a problem is solved, as it is asked."""
-
-    method: str
-    rtol: float
-    atol: Any
-    max_step: Optional[float]
-    max_steps: Optional[int]
-    first_step: Optional[float]
 
 
 class Rows:
@@ -83,88 +73,42 @@ class Rows:
             self.undecided[i] |= undecided
 
 
-def solve_function(
-    fun: Callable[..., Any],
-    span: tuple[float, float],
-    y0: Sequence[float],
-    times: Optional[list[float]],
-    asked: Optional[list[AskedEvent]],
-    args: tuple[Any, ...],
-    numerics: Numerics,
-    dense_output: bool,
-    vectorized: bool,
-    constant_jacobian: bool,
-) -> IvpResult:
+def solve_function(problem: Problem) -> IvpResult:
     """Solves the problem of a function: :func:`twinslip.solve_ivp`."""
-    if not y0 or span[0] == span[1]:
-        return _still(span, y0, times, asked, dense_output)
-    atol, units = tolerances(numerics.atol, len(y0))
-    function = Function(fun, args, len(y0), units, vectorized)
-    problem = _Problem(function, span, y0, times, asked or [], numerics, atol, dense_output)
-    result = problem.solve(asked is not None)
-    if constant_jacobian:
+    if not problem.y0 or problem.span[0] == problem.span[1]:
+        return _still(problem)
+    result = _Run(problem).solve()
+    if problem.constant_jacobian:
         # As in SciPy: what is given once is not evaluated.
         result["njev"] = 0
     return result
 
 
-def tolerances(atol: Any, count: int) -> tuple[Optional[float], list[float]]:
-    """One absolute tolerance for all states, and the units of the states in which it is theirs.
-
-    The units are powers of two, so that no value is rounded: a state's tolerance is no larger than what is asked, and no less than half
-    of that.
-    """
-    if atol is None or np.ndim(atol) == 0:
-        return (None if atol is None else atol), [1.0] * count
-    try:
-        each = np.asarray(atol, dtype=np.float64)
-    except (TypeError, ValueError):
-        each = np.full(0, np.nan)
-    if each.shape != (count,) or not (np.isfinite(each).all() and (each >= 0).all()):
-        raise InputError(
-            f"atol is {atol!r}, but must be a number or {count} numbers, one for each value of y0, none of them negative",
-            "atol",
-        )
-    most = float(each.max())
-    if most == 0.0:
-        return 0.0, [1.0] * count
-    # Of a state whose tolerance is 0 it is so small that its relative one is all that counts.
-    least = 2.0**-200
-    return most, [2.0 ** math.floor(math.log2(max(one / most, least))) for one in each]
-
-
-class _Problem:
-    def __init__(
-        self,
-        function: Function,
-        span: tuple[float, float],
-        y0: Sequence[float],
-        times: Optional[list[float]],
-        asked: list[AskedEvent],
-        numerics: Numerics,
-        atol: Optional[float],
-        dense_output: bool,
-    ) -> None:
-        self.function, self.times, self.asked = function, times, asked
-        self.numerics, self.atol, self.dense = numerics, atol, dense_output
-        self.t, self.y = span[0], list(y0)
+class _Run:
+    def __init__(self, problem: Problem) -> None:
+        self.problem, self.numerics = problem, problem.numerics
+        self.times, self.asked = problem.times, problem.events or []
+        span, count = problem.span, len(problem.y0)
+        self.atol, units = tolerances(self.numerics.atol, count)
+        self.function = Function(problem.fun, problem.args, count, units, problem.vectorized)
+        self.t, self.y = span[0], list(problem.y0)
         end = math.copysign(_FOREVER, span[1]) if math.isinf(span[1]) else span[1]
         self.way = 1.0 if end > self.t else -1.0
         self.ends = [end]
         # Rows at chosen times are the same whatever the steps are.
-        first = numerics.first_step if times is None else None
+        first = self.numerics.first_step if self.times is None else None
         if first is not None and first < abs(end - self.t):
             self.ends.insert(0, self.t + self.way * first)
         self.length = abs(end - self.t)
-        self.units = np.array(function.units)
-        self.rows = Rows(len(asked), function.count)
+        self.units = np.array(units)
+        self.rows = Rows(len(self.asked), count)
         self.systems: dict[tuple[int, ...], tuple[list[str], bool]] = {}
         self.checked = False
         self.events: list[Asked] = []
-        self.method = numerics.method
+        self.method = self.numerics.method
         self.looked = 0
 
-    def solve(self, has_events: bool) -> IvpResult:
+    def solve(self) -> IvpResult:
         """Runs from one change of a comparison to the next, until the end."""
         forced: dict[int, float] = {}
         still: dict[int, int] = {}
@@ -182,9 +126,7 @@ class _Problem:
             if raised is not None:
                 if isinstance(raised, KeyboardInterrupt):
                     told = "interrupted; what was computed is in the result"
-                    raise Interrupted(
-                        told, self._result(-1, run.failure, has_events)
-                    ) from None
+                    raise Interrupted(told, self._result(-1, run.failure)) from None
                 raise raised
             if run.status < 0:
                 status, failure = -1, run.failure
@@ -198,17 +140,18 @@ class _Problem:
                 forced = {}
                 continue
             side, time, values = ended
-            moved = abs(time - self.t) > 4 * np.finfo(float).eps * abs(time)
-            still = {} if moved else still
+            if abs(time - self.t) > _AT_ONCE * (1.0 + abs(time)):
+                still, forced = {}, {}
             still[side.place] = still.get(side.place, 0) + 1
             self.t, self.y = time, values
-            forced = {side.place: -side.side}
+            # What changed its side at the same time stays there too.
+            forced = {**forced, side.place: -side.side}
             if still[side.place] > _MOST_TURNS:
                 status, failure = -1, self._no_way()
                 break
             if self.t == self.ends[0]:
                 self.ends.pop(0)
-        return self._result(status, failure, has_events)
+        return self._result(status, failure)
 
     def _begin(self, traced: Traced) -> None:
         """Checks the formulas against the function, and finds those of the events and the method."""
@@ -216,13 +159,10 @@ class _Problem:
         function = self.function
         point = function.point(self.t, self.y)
         given = np.array(self.y)
-        with np.errstate(all="ignore"):
-            made = function.fun(
-                self.t, given[:, np.newaxis] if function.vectorized else given, *function.args
-            )
+        made = function.numbers(self.t, self.y)
         ours = [point.value(place) * unit for place, unit in zip(traced.rates, function.units)]
         theirs = np.asarray(made).reshape(-1)
-        if np.iscomplexobj(theirs) or differs(ours, theirs):
+        if np.iscomplexobj(theirs) or differs(ours, theirs.tolist()):
             raise InputError(
                 f"fun gives {theirs.tolist()} at t = {self.t}, but {[float(rate) for rate in ours]} by what it does with symbols: "
                 "it must give the same whenever it is called, of t and y alone",
@@ -276,12 +216,13 @@ class _Problem:
             text = self.function.formula(side.place, values)
             if text is None:
                 raise InputError(
-                    f"y0 has {len(self.y)} values, but must have one less where `fun` compares what depends on t", "y0"
+                    f"y0 has {len(self.y)} values, but must have one less where `fun` compares what depends on t",
+                    "y0",
                 )
             told.append((text, 0.0, 1, side.side))
         times = self._due()
         run, refused, raised = _core.solve_ivp(
-            words, (self.t, self.ends[0]), start, times, told, self.dense
+            words, (self.t, self.ends[0]), start, times, told, self.problem.dense_output
         )
         if refused is not None:
             raise refusal(*refused)
@@ -334,8 +275,9 @@ class _Problem:
             "form, such as np.tanh(x/width)"
         )
 
-    def _result(self, status: int, failure: Optional[str], has_events: bool) -> IvpResult:
+    def _result(self, status: int, failure: Optional[str]) -> IvpResult:
         rows, n = self.rows, self.function.count
+        has_events = self.problem.events is not None
         t = np.concatenate(rows.t) if rows.t else np.array([self.t])
         y = np.concatenate(rows.y) if rows.y else np.array([self.y])
         message = MESSAGES[status] if status in MESSAGES else str(failure)
@@ -343,11 +285,15 @@ class _Problem:
         name = self.numerics.method
         if status != 1 and name in METHODS:
             notes.append(f"`{self.method}` ran in place of {name}.")
-        notes += [note for i, one in enumerate(self.events) if (note := sampled_note(i, one, rows.undecided[i]))]
+        notes += [
+            note
+            for i, one in enumerate(self.events)
+            if (note := sampled_note(i, one, rows.undecided[i]))
+        ]
         if notes and not message.endswith((".", "!", "?")):
             message += "."
         sol = None
-        if self.dense and rows.pieces:
+        if self.problem.dense_output and rows.pieces:
             sol = OdeSolution(Joined(rows.pieces, n, self.function.units))
         empty: Any = []
         return IvpResult(
@@ -366,20 +312,15 @@ class _Problem:
         )
 
 
-def _still(
-    span: tuple[float, float],
-    y0: Sequence[float],
-    times: Optional[list[float]],
-    asked: Optional[list[AskedEvent]],
-    dense_output: bool,
-) -> IvpResult:
+def _still(problem: Problem) -> IvpResult:
     """Where nothing moves: there are no values, or no time for them."""
+    span, y0, times = problem.span, problem.y0, problem.times
     t = np.array(list(span) if times is None else times, dtype=np.float64)
-    none = None if asked is None else [np.empty(0) for _ in asked]
+    none = None if problem.events is None else [np.empty(0) for _ in problem.events]
     return IvpResult(
         t=t,
         y=np.repeat(np.array(y0, dtype=np.float64)[:, np.newaxis], len(t), axis=1),
-        sol=OdeSolution(Constant(span, y0)) if dense_output else None,
+        sol=OdeSolution(Constant(span, y0)) if problem.dense_output else None,
         t_events=none,
         y_events=None if none is None else [one.copy() for one in none],
         nfev=0,
@@ -389,21 +330,3 @@ def _still(
         message=MESSAGES[0],
         success=True,
     )
-
-
-def least_rtol(rtol: Any) -> float:
-    """The smallest of the relative tolerances, which holds for all states; too small ones are raised, as in SciPy."""
-    least = float(np.finfo(float).eps)
-    try:
-        each = np.asarray(rtol, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InputError(f"rtol is {rtol!r}, but must be a number or one for each value of y0", "rtol") from None
-    if each.size == 0 or not (each >= 0).all():
-        raise InputError(f"rtol is {rtol!r}, but must be positive", "rtol")
-    if (each < least).any():
-        warnings.warn(
-            f"At least one element of `rtol` is too small. Setting `rtol = np.maximum(rtol, {least})`.",
-            UserWarning,
-            stacklevel=3,
-        )
-    return float(np.maximum(each, least).min())

@@ -172,7 +172,7 @@ class IvpResult(Record):
         return (IvpResult, (dict(self),))
 
 
-def array_of(field: str, values: npt.ArrayLike) -> Array:
+def array_of(field: str, values: Optional[npt.ArrayLike]) -> Array:
     try:
         given = np.asarray(values)
         if given.dtype.kind in "biuf":
@@ -185,7 +185,7 @@ def array_of(field: str, values: npt.ArrayLike) -> Array:
     raise InputError(f"{field} is {values!r}, but must be numbers", field)
 
 
-def numbers_of(field: str, values: npt.ArrayLike) -> list[float]:
+def numbers_of(field: str, values: Optional[npt.ArrayLike]) -> list[float]:
     array = np.atleast_1d(array_of(field, values))
     if array.ndim != 1:
         raise InputError(f"{field} has {array.ndim} dimensions, but must have 1", field)

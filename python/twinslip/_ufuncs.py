@@ -124,6 +124,18 @@ def _sign(a: Symbol) -> Symbol:
     return a.formulas.number(1.0 if a > 0.0 else -1.0 if a < 0.0 else 0.0)
 
 
+def _arctan2(y: Symbol, x: Symbol) -> Symbol:
+    # Of each quarter by a quotient no larger than 1.
+    if x > abs(y):
+        return (y / x).call("atan")  # type: ignore[no-any-return]
+    if y > abs(x):
+        return math.pi / 2.0 - (x / y).call("atan")  # type: ignore[no-any-return]
+    if y < -abs(x):
+        return -math.pi / 2.0 - (x / y).call("atan")  # type: ignore[no-any-return]
+    turn = math.pi if y >= 0.0 else -math.pi
+    return (y / x).call("atan") + turn  # type: ignore[no-any-return]
+
+
 def _heaviside(a: Symbol, at_zero: Symbol) -> Symbol:
     if a > 0.0:
         return a.formulas.number(1.0)
@@ -131,7 +143,15 @@ def _heaviside(a: Symbol, at_zero: Symbol) -> Symbol:
 
 
 #: Those that jump, where something decides on which side they are.
-_CHOICES: dict[str, Callable[..., Symbol]] = {"heaviside": _heaviside, "sign": _sign}
+_CHOICES: dict[str, Callable[..., Symbol]] = {
+    "arctan2": _arctan2,
+    "ceil": lambda a: -a.formulas.floor(-a),
+    "floor": lambda a: a.formulas.floor(a),
+    "floor_divide": lambda a, b: a // b,
+    "heaviside": _heaviside,
+    "remainder": lambda a, b: a % b,
+    "sign": _sign,
+}
 
 _NO_ARRAY = (
     "a symbol has no value, and so no place in an array of numbers: make the array with "
@@ -160,7 +180,7 @@ def applied(ufunc: np.ufunc, method: str, inputs: tuple[Any, ...], options: dict
     formulas = next(value.formulas for value in inputs if isinstance(value, Symbol))
     if name in _COMPARISONS:
         return _decided(_COMPARISONS[name], formulas, inputs)
-    choices = {} if formulas.decide is None else _CHOICES
+    choices = {} if formulas.decisions is None else _CHOICES
     function = choices.get(name, FUNCTIONS.get(name))
     outputs = options.pop("out", ())
     if function is None or method != "__call__" or options:

@@ -11,13 +11,23 @@ import numpy.typing as npt
 from . import _core
 from ._errors import InputError, Interrupted
 from ._events import AskedEvent, EventFunction, traced_for_system
-from ._function_ivp import Numerics, least_rtol, solve_function
+from ._function_input import (
+    Numerics,
+    Problem,
+    first_step_of,
+    least_rtol,
+    spanned,
+    times_within,
+    unpacked,
+)
+from ._function_ivp import solve_function
 from ._ivp_result import MESSAGES, Array, IvpResult, OdeSolution, numbers_of, refusal
 from .system import System
 
 __all__ = ["IvpResult", "OdeSolution", "solve_ivp"]
 
 RateFunction = Callable[..., Any]
+
 
 def solve_ivp(
     fun: Union[System, RateFunction, None] = None,
@@ -99,25 +109,32 @@ def solve_ivp(
         raise InputError(f"max_step is {max_step!r}, but must be a positive number", "max_step")
     largest = None if max_step == np.inf else float(max_step)
     if callable(fun) and not isinstance(fun, System):
-        more = _unpacked(args)
-        span, start = _problem(t_span, y0)
-        times = None if t_eval is None else _times(t_eval, span)
-        step = None if first_step is None else _first_step(first_step, span)
-        numerics = Numerics(named, least_rtol(rtol), atol, largest, max_steps, step)
-        asked = None if events is None else _events(events, more)
-        constant = jac is not None and not callable(jac)
+        more = unpacked(args)
+        span, start = spanned(t_span, y0)
+        step = None if first_step is None else first_step_of(first_step, span)
         return solve_function(
-            fun, span, start, times, asked, more, numerics, bool(dense_output), bool(vectorized), constant
+            Problem(
+                fun,
+                span,
+                start,
+                None if t_eval is None else times_within(t_eval, span),
+                None if events is None else _events(events, more),
+                more,
+                Numerics(named, least_rtol(rtol), atol, largest, max_steps, step),
+                bool(dense_output),
+                bool(vectorized),
+                jac is not None and not callable(jac),
+            )
         )
     known = fun if system is None else system
     if not isinstance(known, System):
         hint = "; make one with System.from_function" if callable(known) else ""
         raise InputError(
-            f"system is {known!r}, but must be a twinslip.System or a function fun(t, y) as the first argument{hint}",
+            f"system is {known!r}, but must be a twinslip.System, or a function fun(t, y) as the first argument{hint}",
             "system",
         )
-    span = numbers_of("t_span", t_span)
-    if len(span) != 2:
+    ends = numbers_of("t_span", t_span)
+    if len(ends) != 2:
         raise InputError(f"t_span is {t_span!r}, but must be two times", "t_span")
     start = numbers_of("y0", y0)
     times = None if t_eval is None else numbers_of("t_eval", t_eval)
@@ -128,9 +145,9 @@ def solve_ivp(
         told = f"args is {args!r}, but must be a sequence, such as ({args!r},)"
         raise InputError(told, "args") from None
     found = [traced_for_system(one, more, len(start)) for one in _events(events, more)]
-    told_events = [(one.given, one.asked.way, one.asked.most, None) for one in found]
+    given = [(one.given, one.asked.way, one.asked.most, None) for one in found]
     run, refused, raised = _core.solve_ivp(
-        words, (span[0], span[1]), start, times, told_events, bool(dense_output)
+        words, (ends[0], ends[1]), start, times, given, bool(dense_output)
     )
     if refused is not None:
         raise refusal(*refused)
@@ -141,55 +158,6 @@ def solve_ivp(
             raise Interrupted("interrupted; what was computed is in the result", result) from None
         raise raised
     return result
-
-
-def _unpacked(args: Any) -> tuple[Any, ...]:
-    try:
-        return () if args is None else tuple(args)
-    except TypeError:
-        # In the words of SciPy.
-        raise TypeError(
-            f"Supplied 'args' cannot be unpacked. Please supply `args` as a tuple (e.g. `args=({args},)`)"
-        ) from None
-
-
-def _problem(t_span: Any, y0: Any) -> tuple[tuple[float, float], list[float]]:
-    span = numbers_of("t_span", t_span)
-    if len(span) != 2:
-        raise InputError(f"t_span is {t_span!r}, but must be two times", "t_span")
-    if not np.isfinite(span[0]) or np.isnan(span[1]):
-        raise InputError(f"t_span is {t_span!r}, but must begin at a finite time", "t_span")
-    if np.iscomplexobj(y0):
-        raise InputError(
-            f"y0 is {y0!r}, but must be real: write the real and imaginary parts of complex values as two states", "y0"
-        )
-    start = numbers_of("y0", y0)
-    if not np.isfinite(start).all():
-        told = "All components of the initial state `y0` must be finite."
-        raise InputError(f"{told} It is {start}", "y0")
-    return (span[0], span[1]), start
-
-
-def _times(t_eval: Any, span: tuple[float, float]) -> list[float]:
-    times = numbers_of("t_eval", t_eval)
-    way = 1.0 if span[1] >= span[0] else -1.0
-    for i, time in enumerate(times):
-        if not min(span) <= time <= max(span):
-            told = f"t_eval[{i}] is {time}, but must be within `t_span`, from {span[0]} to {span[1]}"
-            raise InputError(told, "t_eval")
-        if i > 0 and not way * (time - times[i - 1]) > 0:
-            word = "greater" if way > 0 else "less"
-            told = f"t_eval[{i}] is {time}, but must be {word} than {times[i - 1]}, the time before"
-            raise InputError(told, "t_eval")
-    return times
-
-
-def _first_step(first_step: Any, span: tuple[float, float]) -> float:
-    length = abs(span[1] - span[0])
-    if not (isinstance(first_step, (int, float, np.number)) and 0 < first_step <= length):
-        told = f"first_step is {first_step!r}, but must be positive and no larger than t_span, {length}"
-        raise InputError(told, "first_step")
-    return float(first_step)
 
 
 def _result(run: _core.IvpRun, has_events: bool) -> IvpResult:
@@ -251,6 +219,8 @@ def _event(function: EventFunction, more: tuple[Any, ...]) -> AskedEvent:
     def called(t: float, y: Array) -> float:
         made = function(t, y, *more)
         # SciPy takes arrays of one value too.
-        return float(made.reshape(-1)[0] if isinstance(made, np.ndarray) and made.size == 1 else made)
+        return float(
+            made.reshape(-1)[0] if isinstance(made, np.ndarray) and made.size == 1 else made
+        )
 
     return AskedEvent(function, called, way, most or None)
