@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import linecache
 import math
 import os
@@ -42,6 +43,8 @@ def with_symbols(
     Untraced
         With the place in the function, for what no formula can say. What symbols are not to blame for comes through.
     """
+    # What numba has compiled knows numbers alone.
+    function = getattr(function, "py_func", function)
     try:
         return function(*arguments)
     except InputError:
@@ -104,11 +107,22 @@ def _has_symbols(values: Any) -> bool:
     return isinstance(values, (list, tuple)) and any(map(_has_symbols, values))
 
 
+def _float(value: Any = 0.0) -> Any:
+    """A number; of a symbol the symbol."""
+    return value if _has_symbols(value) else float(value)
+
+
+def _dtype(value: Any) -> Any:
+    """What an argument was that is the name of the numbers in an array."""
+    return float if value is _float else value
+
+
 def _room(make: Callable[..., Any]) -> Callable[..., Any]:
     """A function that makes arrays of numbers makes arrays that have room for symbols."""
 
     def made(*arguments: Any, **options: Any) -> Any:
-        array = make(*arguments, **options)
+        named = {name: _dtype(value) for name, value in options.items()}
+        array = make(*map(_dtype, arguments), **named)
         return array.astype(object) if array.dtype.kind == "f" else array
 
     return made
@@ -120,7 +134,7 @@ def _kept(make: Callable[..., Any]) -> Callable[..., Any]:
     def made(values: Any, dtype: Any = None, *arguments: Any, **options: Any) -> Any:
         if _has_symbols(values):
             dtype = object
-        return make(values, dtype, *arguments, **options)
+        return make(values, _dtype(dtype), *arguments, **options)
 
     return made
 
@@ -170,10 +184,6 @@ _MATH: dict[str, Any] = {
 _MATH["log"] = lambda x, *base: np.log(x) / math.log(*base) if base else np.log(x)
 
 
-def _float(value: Any = 0.0) -> Any:
-    return value if _has_symbols(value) else float(value)
-
-
 def _other(value: Any, namespace: dict[str, Any], made: dict[str, Any]) -> Any:
     """What stands in place of something that a function of this namespace uses."""
     if value is np:
@@ -217,6 +227,11 @@ def _cell(cell: Any, namespace: dict[str, Any], made: dict[str, Any]) -> Any:
 
 
 def _copied(function: Callable[..., Any]) -> Callable[..., Any] | None:
+    if isinstance(function, functools.partial):
+        inner = _copied(function.func)
+        return (
+            None if inner is None else functools.partial(inner, *function.args, **function.keywords)
+        )
     if isinstance(function, types.MethodType):
         inner = _copied(function.__func__)
         return None if inner is None else types.MethodType(inner, function.__self__)

@@ -23,8 +23,10 @@ class Decisions:
     Some of these sides are known: there a difference may be 0 but for rounding.
     """
 
-    def __init__(self, point: Point, known: Mapping[int, float]) -> None:
+    def __init__(self, point: Point, known: Mapping[int, float], kinks: bool = False) -> None:
         self._point = point
+        #: Whether it is decided too which of two numbers is the lesser, and the sign in an absolute value.
+        self.kinks = kinks
         self._known = known
         #: Of each difference that was looked at 1 or -1, by the place of its operation.
         self.sides: dict[int, float] = {}

@@ -55,10 +55,12 @@ def traced_event(function: Function, asked: AskedEvent, t: float, y: Array) -> A
     try:
         symbol = function.event(asked.function)
     except Untraced as error:
-        return none(str(error).replace("events can't be traced", "it can't be traced"))
+        return none(str(error).replace("events can't be traced", "it can't be traced", 1))
     if symbol.known() is not None:
         # It has no zeros, or nothing else.
         return none(None)
+    if function.formula(symbol.place, count) is None:
+        return none(f"its formula has t beside {count} values")
     if differs([function.point(t, y.tolist()).value(symbol.place)], [asked.called(t, y.copy())]):
         return none("it gives other values with numbers than with symbols")
     return Asked(sampled, symbol, function, None)
@@ -89,10 +91,18 @@ def traced_for_system(asked: AskedEvent, more: tuple[Any, ...], count: int) -> G
     return GivenEvent(asked, asked.called if text is None else text)
 
 
-def sampled_note(i: int, event: Asked, undecided: bool) -> str:
+def with_notes(message: str, notes: list[str]) -> str:
+    """A message with what else is to be said."""
+    said = [note for note in notes if note]
+    if said and not message.endswith((".", "!", "?")):
+        message += "."
+    return " ".join([message, *said])
+
+
+def sampled_note(i: int, reason: Optional[str], undecided: bool) -> str:
     """What is to be said of an event whose zeros are not all isolated."""
-    if event.reason is not None:
-        return f"Event {i} was only looked at within steps, where zeros close to each other may be missed, as {event.reason}."
+    if reason is not None:
+        return f"Event {i} was only looked at within steps, where zeros close to each other may be missed, as {reason}."
     if undecided:
         return f"Event {i} was in part only looked at within steps, where zeros close to each other may be missed, as there are too many."
     return ""

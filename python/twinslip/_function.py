@@ -62,6 +62,8 @@ class Function:
         self.count = count
         self.units = tuple(units)
         self.vectorized = vectorized
+        #: Whether kinks are places where a run ends and begins again, as comparisons are.
+        self.kinks = False
         self.formulas = Formulas(MOST_OPERATIONS)
         self.names = tuple(f"y{i}" for i in range(count))
         self.time = self.formulas.named(TIME)
@@ -83,7 +85,7 @@ class Function:
 
     def traced(self, t: float, y: Sequence[float], forced: dict[int, float]) -> Traced:
         """The rates as they are at a point, where some operations are on sides that are known."""
-        decisions = Decisions(self.point(t, y), forced)
+        decisions = Decisions(self.point(t, y), forced, self.kinks)
         self.formulas.decisions = decisions
         try:
             states = self.symbols()

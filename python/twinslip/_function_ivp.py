@@ -9,11 +9,16 @@ import numpy as np
 
 from . import _core
 from ._errors import InputError, Interrupted
-from ._events import Asked, sampled_note, traced_event
+from ._events import Asked, sampled_note, traced_event, with_notes
 from ._function import Array, Function, Side, Traced, differs
 from ._function_input import Problem, tolerances
 from ._ivp_result import MESSAGES, Constant, IvpResult, Joined, OdeSolution, refusal
+from ._rows import Rows
+from ._symbols import Symbol
 from .system import System
+
+#: What changes its side, with the time and the values there.
+Turn = tuple[Side, float, list[float]]
 
 #: SciPy's methods, and the nearest of ours.
 METHODS = {
@@ -32,45 +37,10 @@ _STIFF = 1e4
 _FOREVER = 1e300
 #: Zeros at times no more apart are at one time, as far as their isolation can tell, in units of 1 and the time together.
 _AT_ONCE = 16 * float(np.finfo(float).eps)
+#: What has failed was at the border of a comparison where it would have come there within this time, in the same units.
+_NEAR = 1e-9
 #: No comparison changes more often at one time.
 _MOST_TURNS = 2
-
-
-class Rows:
-    """What a run has given so far."""
-
-    def __init__(self, events: int, count: int) -> None:
-        self.t: list[Array] = []
-        self.y: list[Array] = []
-        self.t_events: list[list[float]] = [[] for _ in range(events)]
-        self.y_events: list[list[Array]] = [[] for _ in range(events)]
-        self.pieces: list[_core.Solution] = []
-        self.work = np.zeros(3, dtype=int)
-        self.undecided = [False] * events
-        self.count = count
-
-    def add(self, run: _core.IvpRun, units: Array, chosen: bool) -> None:
-        """One part of the run, with its rows, which begin where the last one ended, and its events."""
-        t, y = run.t(), run.y().reshape(-1, run.dimension)[:, : self.count] * units
-        again = 1 if self.t and not chosen else 0
-        self.t.append(t[again:])
-        self.y.append(y[again:])
-        solution = run.solution()
-        if solution is not None:
-            self.pieces.append(solution)
-        self.work += run.work
-        found = zip(run.t_events(), run.y_events(), run.undecided())
-        for i, (times, values, undecided) in enumerate(found):
-            if i >= len(self.t_events):
-                break
-            values = values.reshape(-1, run.dimension)[:, : self.count] * units
-            for time, value in zip(times.tolist(), values):
-                # What ends one part is not found again as the beginning of the next one.
-                last = self.t_events[i][-1] if self.t_events[i] else None
-                if last is None or len(self.t) == 1 or abs(time - last) > 1e-14 * abs(time):
-                    self.t_events[i].append(time)
-                    self.y_events[i].append(value)
-            self.undecided[i] |= undecided
 
 
 def solve_function(problem: Problem) -> IvpResult:
@@ -121,19 +91,16 @@ class _Run:
             if stuck is not None:
                 status, failure = -1, stuck
                 break
-            run, raised = self._run(traced)
+            run, raised = self._run(traced, forced)
             self.rows.add(run, self.units, self.times is not None)
             if raised is not None:
                 if isinstance(raised, KeyboardInterrupt):
                     told = "interrupted; what was computed is in the result"
                     raise Interrupted(told, self._result(-1, run.failure)) from None
                 raise raised
-            if run.status < 0:
-                status, failure = -1, run.failure
-                break
-            ended = self._ended_by(run, traced.sides)
-            if run.status == 1 and ended is None:
-                status = 1
+            ended = self._border(run) if run.status < 0 else self._ended_by(run, traced.sides)
+            if ended is None and run.status != 0:
+                status, failure = run.status, run.failure
                 break
             if ended is None:
                 self._arrive(self.ends.pop(0))
@@ -204,7 +171,9 @@ class _Run:
             self.systems[key] = words, timed
         return self.systems[key]
 
-    def _run(self, traced: Traced) -> tuple[_core.IvpRun, Optional[BaseException]]:
+    def _run(
+        self, traced: Traced, forced: dict[int, float]
+    ) -> tuple[_core.IvpRun, Optional[BaseException]]:
         words, timed = self._system(traced)
         start = [*(np.array(self.y) / self.units).tolist(), *([self.t] if timed else [])]
         values = len(start)
@@ -213,7 +182,7 @@ class _Run:
             most = None if asked.most is None else asked.most - len(self.rows.t_events[i])
             told.append((event.given(values), asked.way, most, None))
         for side in traced.sides:
-            text = self.function.formula(side.place, values)
+            text = self.function.formula(self._bordered(side, forced), values)
             if text is None:
                 raise InputError(
                     f"y0 has {len(self.y)} values, but must have one less where `fun` compares what depends on t",
@@ -229,6 +198,17 @@ class _Run:
         assert run is not None
         return run, raised
 
+    def _bordered(self, side: Side, forced: dict[int, float]) -> int:
+        """The function whose sign tells the side: where a side has just been come to, less what is left of the other one by rounding, so
+        that what rests there does not come back.
+        """
+        if side.place in forced:
+            left = float(self.function.point(self.t, self.y).value(side.place))
+            if left * side.side < 0.0:
+                difference: Symbol = Symbol(self.function.formulas, side.place) - left
+                return difference.place
+        return side.place
+
     def _due(self) -> Optional[list[float]]:
         """The times that are asked for up to the end of this part."""
         if self.times is None:
@@ -240,9 +220,7 @@ class _Run:
                 rest.append(time)
         return rest
 
-    def _ended_by(
-        self, run: _core.IvpRun, sides: list[Side]
-    ) -> Optional[tuple[Side, float, list[float]]]:
+    def _ended_by(self, run: _core.IvpRun, sides: list[Side]) -> Optional[Turn]:
         """What changed its side at the end of a part, with the time and the values there; None where nothing did."""
         times, values = run.t_events(), run.y_events()
         first = len(self.asked)
@@ -250,6 +228,34 @@ class _Run:
             if len(at) > 0:
                 y = y.reshape(-1, run.dimension)[0, : len(self.y)] * self.units
                 return side, float(at[0]), y.tolist()
+        return None
+
+    def _border(self, run: _core.IvpRun) -> Optional[Turn]:
+        """Where a run that failed was about to change a comparison: there rates may not be smooth, as that of a tank that has run empty, and
+        from there on it is on its other side.
+        """
+        if self.times is not None:
+            # The rows are at other times.
+            traced = self.function.traced(self.t, self.y, {})
+            words, timed = self._system(traced)
+            start = [*(np.array(self.y) / self.units).tolist(), *([self.t] if timed else [])]
+            again, _, _ = _core.solve_ivp(words, (self.t, self.ends[0]), start, None, [], False)
+            if again is None:
+                return None
+            run = again
+        values = run.y().reshape(-1, run.dimension)[-1, : len(self.y)] * self.units
+        t, y = float(run.t()[-1]), values.tolist()
+        for kinks in (self.function.kinks, True):
+            self.function.kinks = kinks
+            traced = self.function.traced(t, y, {})
+            point = self.function.point(t, y)
+            rates = [point.value(place) * unit for place, unit in zip(traced.rates, self.units)]
+            point = self.function.point(t, y, rates)
+            for side in traced.sides:
+                left = abs(point.value(side.place))
+                fall = -self.way * side.side * point.slope(side.place)
+                if fall > 0.0 and left <= _NEAR * (1.0 + abs(t)) * fall:
+                    return side, t, y
         return None
 
     def _arrive(self, end: float) -> None:
@@ -285,13 +291,8 @@ class _Run:
         name = self.numerics.method
         if status != 1 and name in METHODS:
             notes.append(f"`{self.method}` ran in place of {name}.")
-        notes += [
-            note
-            for i, one in enumerate(self.events)
-            if (note := sampled_note(i, one, rows.undecided[i]))
-        ]
-        if notes and not message.endswith((".", "!", "?")):
-            message += "."
+        for i, one in enumerate(self.events):
+            notes.append(sampled_note(i, one.reason, rows.undecided[i]))
         sol = None
         if self.problem.dense_output and rows.pieces:
             sol = OdeSolution(Joined(rows.pieces, n, self.function.units))
@@ -307,7 +308,7 @@ class _Run:
             njev=int(rows.work[1]) + self.looked,
             nlu=int(rows.work[2]) + self.looked,
             status=status,
-            message=" ".join([message, *notes]),
+            message=with_notes(message, notes),
             success=status >= 0,
         )
 

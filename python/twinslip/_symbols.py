@@ -239,6 +239,23 @@ def _compared(operator: str) -> Any:
     return method
 
 
+def _extreme(name: str) -> Callable[[Symbol, Symbol], Symbol]:
+    """The lesser or greater of two, which has a kink unless it is decided which that is."""
+
+    def made(a: Symbol, b: Symbol) -> Symbol:
+        decisions = a.formulas.decisions
+        if decisions is None or not decisions.kinks:
+            return a.formulas.called(name, a, b)
+        first = a <= b if name == "min" else a >= b
+        return a if first else b
+
+    return made
+
+
+least = _extreme("min")
+greatest = _extreme("max")
+
+
 def _whole(a: Symbol, b: Symbol) -> Symbol:
     quotient: Symbol = a / b
     return a.formulas.floor(quotient)
@@ -326,7 +343,10 @@ class Symbol:
         return self.operand() if self.kind == "negative" else self.formulas.made("negative", self)
 
     def __abs__(self) -> Symbol:
-        return self.call("abs")
+        decisions = self.formulas.decisions
+        if decisions is None or not decisions.kinks:
+            return self.call("abs")
+        return self if self >= 0.0 else -self
 
     def conjugate(self) -> Symbol:
         """It is real."""

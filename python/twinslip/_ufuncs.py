@@ -7,17 +7,15 @@ from typing import Any, Callable
 
 import numpy as np
 
-from ._symbols import NO_CHOICE, Formulas, Symbol
+from ._symbols import NO_CHOICE, Formulas, Symbol, greatest, least
 
 #: Those that formulas have, by the names that numpy gives to them.
 _CALLS = {
-    "absolute": "abs",
     "arcsinh": "asinh",
     "arctan": "atan",
     "cos": "cos",
     "cosh": "cosh",
     "exp": "exp",
-    "fabs": "abs",
     "log": "ln",
     "log10": "log10",
     "sin": "sin",
@@ -30,10 +28,6 @@ _CALLS = {
 
 def _call(name: str) -> Callable[[Symbol], Symbol]:
     return lambda a: a.call(name)
-
-
-def _call_of_two(name: str) -> Callable[[Symbol, Symbol], Symbol]:
-    return lambda a, b: a.formulas.called(name, a, b)
 
 
 def _expm1(a: Symbol) -> Symbol:
@@ -78,6 +72,7 @@ def _hypot(a: Symbol, b: Symbol) -> Symbol:
 #: All that there are, each of one or two symbols.
 FUNCTIONS: dict[str, Callable[..., Symbol]] = {
     **{name: _call(called) for name, called in _CALLS.items()},
+    "absolute": abs,
     "add": lambda a, b: a + b,
     "arccos": _arccos,
     "arccosh": _arccosh,
@@ -87,14 +82,15 @@ FUNCTIONS: dict[str, Callable[..., Symbol]] = {
     "divide": lambda a, b: a / b,
     "exp2": lambda a: 2.0**a,
     "expm1": _expm1,
+    "fabs": abs,
     "float_power": lambda a, b: a**b,
-    "fmax": _call_of_two("max"),
-    "fmin": _call_of_two("min"),
+    "fmax": greatest,
+    "fmin": least,
     "hypot": _hypot,
     "log1p": _log1p,
     "log2": lambda a: a.call("ln") / math.log(2.0),
-    "maximum": _call_of_two("max"),
-    "minimum": _call_of_two("min"),
+    "maximum": greatest,
+    "minimum": least,
     "multiply": lambda a, b: a * b,
     "negative": lambda a: -a,
     "positive": lambda a: a,

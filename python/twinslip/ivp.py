@@ -52,43 +52,62 @@ def solve_ivp(
     uband: Optional[int] = None,
     min_step: float = 0.0,
 ) -> IvpResult:
-    """Solves an initial value problem; a call of SciPy's needs another first argument.
+    """Solves an initial value problem, of a function as SciPy takes it or of a system.
 
     Parameters
     ----------
-    system : System
-        What is integrated, in place of a function.
+    fun : callable or System
+        ``fun(t, y, *args)`` gives the rates of 1 to 8 values, as in SciPy. It is called once, with
+        symbols, and again wherever one of its comparisons changes: arithmetic, numpy's functions
+        of each element and those of ``math``, indexing, slices, loops, arrays, ``np.where`` and
+        ``if`` go, steps such as ``t % 1`` too. Runs end and begin again where a comparison
+        changes, as exactly as anywhere. With t in the rates there may be 7 values. A System is
+        taken too, also by the name ``system``.
     t_span : (float, float)
-        Where it begins and ends [L/V*; s in SI]; backward in time where the end is the smaller
-        one.
+        Where it begins and ends [of interfaces L/V*; s in SI]; backward in time where the end is
+        the smaller one. Of a function the end may be infinite.
     y0 : array_like, shape (n,)
-        The start: (tau, psi_1, psi_2, ...) of interfaces, or the states of a system of one's own.
-    method : str
+        The start: real values; of interfaces (tau, psi_1, psi_2, ...).
+    method : str or class
         ``"auto"``, ``"taylor"``, ``"rodas5p"``, ``"rodas4"``, ``"rosenbrock23"``,
-        ``"cvode-bdf"`` or ``"cvode-adams"``.
+        ``"cvode-bdf"`` or ``"cvode-adams"``. Of a function also SciPy's: ``"RK23"``, ``"RK45"`` and
+        ``"DOP853"`` are ``"taylor"``, ``"Radau"``, ``"BDF"`` and ``"LSODA"`` are ``"auto"``; the first
+        two look at the Jacobian first, and are ``"rodas5p"`` where the problem is stiff from its
+        start. The message says so, but where an event ends the run, as scripts compare that one.
     t_eval : array_like, optional
         Times at which the solution is kept, within the span and in its order; else the ends of
         all steps.
     dense_output : bool
         Whether ``sol`` is made.
     events : callable or sequence of callables, optional
-        ``event(t, y)``, whose zeros are found; with the attributes ``terminal`` (True, or after
-        how many the run ends) and ``direction`` (only upwards if positive, only downwards if
-        negative, along the run). What it raises comes through.
+        ``event(t, y, *args)``, whose zeros are found; with the attributes ``terminal`` (True, or
+        after how many the run ends) and ``direction`` (only upwards if positive, only downwards if
+        negative, along the run). It is called with symbols too, and the zeros of its formula are
+        isolated within each step, so that none is missed. One that has no formula is looked at at
+        the ends of steps and, within the long ones of power series, at half as many points as
+        their order: two zeros between two looks are missed. Of a function the message says so. What
+        it raises comes through.
+    vectorized : bool
+        Whether the function takes an array of columns.
     args : sequence, optional
-        More arguments of the events.
-    rtol, atol : float
-        Local error tolerances, each one number; of interfaces they are of tau and ln psi,
-        dimensionless. atol is rtol unless it is given.
+        More arguments of the function and the events.
+    system : System, optional
+        Another name of the first argument.
+    rtol : float or array_like
+        Relative tolerance of a step. Of several the smallest holds for all.
+    atol : float or array_like, shape (n,), optional
+        Absolute tolerance, rtol unless it is given. Of a function each value may have its own, which
+        is rounded down to a power of two times the largest. Of interfaces it is of tau and ln psi,
+        dimensionless.
     max_steps : int, optional
-        Give up after so many steps.
-    vectorized, jac, first_step
-        Taken as SciPy takes them, and not needed: derivatives are exact, and the first step finds
-        itself.
+        Give up after so many steps; of a function that compares, between two changes.
+    jac, jac_sparsity, lband, uband, min_step
+        Taken as SciPy takes them, and not needed: derivatives are exact. ``njev`` is 0 with a matrix.
+    first_step : float, optional
+        Of a function the first step ends there, or before where the tolerances ask for that.
     max_step : float
-        The largest step in time, for what is shorter than a step: a pulse that begins and ends
-        within one is seen by no method. Long steps of power series are looked at for events in half as many parts
-        as their order; two zeros within one part are missed, as by SciPy within a step.
+        The largest step in time, for what is shorter than a step: a smooth pulse that begins and
+        ends within one is seen by no method.
 
     Returns
     -------

@@ -3,15 +3,16 @@
 use super::solution::IvpSolution;
 use crate::error::{Error, Result};
 use crate::model::TextSystem;
-use crate::number::{Interval, Jet};
+use crate::number::{Interval, Jet, Real};
 use crate::scene::text::SystemFile;
 
 /// A function of the user's values, and of time, as a formula.
 #[derive(Debug, Clone, PartialEq)]
 pub struct IvpFormula {
-    /// Its first rate is the function; its states are the values and, where there is one more, time.
+    /// Its first rate is the function.
     system: TextSystem,
-    of_time: bool,
+    /// Which of its states is time.
+    time: Option<usize>,
 }
 
 /// The parts into which a step was divided.
@@ -26,41 +27,41 @@ pub(super) struct Parts {
 }
 
 impl IvpFormula {
-    /// From the text of a system, whose first rate is the function: its states are so many values in their order and, where it has one
-    /// more, time.
+    /// From the text of a system, whose first rate is the function: its states are so many values in their order. One that is called `t` is
+    /// time itself, whether it is one of the values or one more, the last.
     ///
     /// # Errors
     /// [`Error::Input`] for what is wrong in the text, and for another number of states.
     pub fn parse(text: &str, values: usize) -> Result<Self> {
         let system = SystemFile::parse("event", text)?.system;
         let count = system.states().len();
-        if count != values && count != values + 1 {
+        let time = system.states().iter().position(|&name| name == "t");
+        if count != values && (count, time) != (values + 1, Some(values)) {
             return Err(Error::Input(format!(
-                "the formula of an event has {count} states, but must have the {values} values, and may have time after them"
+                "the formula of an event has {count} states, but must have the {values} values, and may have t after them"
             )));
         }
-        Ok(IvpFormula {
-            of_time: count > values,
-            system,
-        })
+        Ok(IvpFormula { system, time })
     }
 
     /// The function.
     pub fn at(&self, time: f64, values: &[f64]) -> f64 {
-        let mut x = values.to_vec();
-        if self.of_time {
-            x.push(time);
+        self.of(values.to_vec(), time)
+    }
+
+    fn of<T: Real>(&self, mut x: Vec<T>, time: T) -> T {
+        if let Some(place) = self.time {
+            match x.get_mut(place) {
+                Some(value) => *value = time,
+                None => x.push(time),
+            }
         }
         self.system.rates(&x)[0]
     }
 
     /// The function and its slope over a part of the last step of a solution.
     fn bounds(&self, steps: &IvpSolution, part: (f64, f64)) -> Jet<Interval, 1> {
-        let mut x = steps.bounds(part);
-        if self.of_time {
-            x.push(steps.time_bounds(part));
-        }
-        self.system.rates(&x)[0]
+        self.of(steps.bounds(part), steps.time_bounds(part))
     }
 
     /// Divides the last step of a solution until the function or its slope has one sign in each part, or the part can't be told from a
