@@ -109,7 +109,7 @@ fn close_pairs_are_found_by_every_method() {
         let plan = plan(&words, (0.1, 40.0), &[0.1_f64.sin(), 0.1_f64.cos()]);
         let outcome = with(&plan, vec![event("x y", "x - 0.995")]);
         let half = 0.995_f64.acos();
-        let crests = (0..6).map(|k| PI * (0.5 + 2.0 * f64::from(k)));
+        let crests = (0..7).map(|k| PI * (0.5 + 2.0 * f64::from(k)));
         let exact: Vec<f64> = crests.flat_map(|t| [t - half, t + half]).collect();
         all_near(&outcome.t_events[0], &exact, 0.01);
     }

@@ -307,6 +307,18 @@ def test_events_that_have_no_formula_are_sampled_and_that_is_said() -> None:
     assert solve_ivp(oscillator, (0, 10), [1, 0], events=lambda t, y: 1.0).message == REACHED
 
 
+def test_events_of_what_is_all_rounding_are_told_in_time() -> None:
+    solved = solve_ivp(
+        lambda t, y: [y[1], -y[0], 0 * y[2]], (0, 300), [1, 0, 0], rtol=1e-10,
+        events=[lambda t, y: y[2], lambda t, y: y[0] ** 2 + y[1] ** 2 - 1, lambda t, y: (y[0] - 2) ** 2],
+    )  # fmt: skip
+    assert solved.t_events is not None
+    # What is 0 throughout is an event of each step, as in SciPy.
+    assert len(solved.t_events[0]) == len(solved.t) - 1 and len(solved.t_events[2]) == 0
+    assert "Event 1 was in part only looked at within steps" in solved.message
+    assert "Event 0" not in solved.message and "Event 2" not in solved.message
+
+
 def test_an_event_where_a_comparison_changes_is_one_event() -> None:
     solved = solve_ivp(
         lambda t, y: [2.0 if y[0] > 0 else 1.0], (0, 4), [-1],

@@ -104,5 +104,5 @@ def sampled_note(i: int, reason: Optional[str], undecided: bool) -> str:
     if reason is not None:
         return f"Event {i} was only looked at within steps, where zeros close to each other may be missed, as {reason}."
     if undecided:
-        return f"Event {i} was in part only looked at within steps, where zeros close to each other may be missed, as there are too many."
+        return f"Event {i} was in part only looked at within steps, where zeros close to each other may be missed, as there are too many or they can't be told from rounding."
     return ""

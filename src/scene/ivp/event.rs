@@ -76,7 +76,11 @@ impl<'a, E> IvpEvent<'a, E> {
         let up = before <= 0.0 && after >= 0.0;
         let down = before >= 0.0 && after <= 0.0;
         if let Some(side) = self.side {
-            return if side > 0.0 { after < 0.0 } else { after > 0.0 };
+            return if side > 0.0 {
+                before >= 0.0 && after < 0.0
+            } else {
+                before <= 0.0 && after > 0.0
+            };
         }
         let way = self.direction;
         (up && way > 0.0) || (down && way < 0.0) || ((up || down) && way == 0.0)

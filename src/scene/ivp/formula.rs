@@ -69,11 +69,12 @@ impl IvpFormula {
     pub(super) fn parts(&self, steps: &IvpSolution, most: usize) -> Parts {
         /// Of a step; a part that is narrower is not divided.
         const NARROW: f64 = 1.0 / (1_u64 << 40) as f64;
-        /// What is smaller than this part of the largest value in the step has no sign that could be told from rounding.
-        const NOISE: f64 = 4.0 * f64::EPSILON;
+        /// What is smaller than so many times what is rounded there has no sign that could be told.
+        const NOISE: f64 = 4.0;
+        /// Of a step; where a part as wide as this is all rounding, or bounds are no better than that, zeros may be anywhere in it.
+        const WIDE: f64 = 1.0 / 64.0;
         let mut made = Parts::default();
         let mut ends = Vec::new();
-        let mut largest = f64::MIN_POSITIVE;
         let mut parts = vec![(0.0, 1.0)];
         while !parts.is_empty() {
             // All of one width, so that what is left over where there are too many is everywhere as fine.
@@ -91,15 +92,17 @@ impl IvpFormula {
                 let at = self.bounds(steps, (middle, middle)).value;
                 let half = 0.5 * (end - begin);
                 let value = (at + slope * Interval::new(-half, half)).common(bounds.value);
-                let size = at.lo().abs().max(at.hi().abs());
-                if size.is_finite() {
-                    largest = largest.max(size);
-                }
                 let decided = value.sign().is_some() || slope.sign().is_some();
                 if decided || end - begin <= NARROW {
                     ends.extend([begin, end]);
-                } else if value.lo().abs().max(value.hi().abs()) > NOISE * largest {
+                    continue;
+                }
+                let rounded = f64::MIN_POSITIVE + NOISE * (at.hi() - at.lo());
+                let wide = value != Interval::constant(0.0) && end - begin >= WIDE;
+                if value.distance_from(0.0) > rounded || (wide && end - begin > WIDE) {
                     halves.extend([(begin, middle), (middle, end)]);
+                } else {
+                    made.undecided |= wide;
                 }
             }
             parts = halves;

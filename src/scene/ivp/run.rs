@@ -88,8 +88,8 @@ impl IvpPlan {
     }
 }
 
-/// The parts of steps that are looked at for the zeros of formulas, in one step and in a run.
-const MOST_PARTS: [usize; 2] = [1 << 17, 1 << 21];
+/// The parts of steps that are looked at for the zeros of a formula, in one step and in a run.
+const MOST_PARTS: [usize; 2] = [1 << 16, 1 << 19];
 
 /// Sees the steps of a run.
 struct Watch<'p, 'a, E> {
@@ -102,8 +102,8 @@ struct Watch<'p, 'a, E> {
     values: Vec<f64>,
     /// When the function of each event was looked at last, and what it was.
     functions: Vec<(f64, f64)>,
-    /// How many parts of steps are still looked at for the zeros of formulas.
-    parts: usize,
+    /// How many parts of steps are still looked at for the zeros of each formula.
+    parts: Vec<usize>,
     /// How many of the times that are asked for have their row.
     sampled: usize,
     outcome: IvpOutcome,
@@ -119,13 +119,13 @@ struct Seen<'s, 'a> {
 }
 
 impl Seen<'_, '_> {
-    /// The times within the step, and its end, at which the functions of events are looked at. Steps of power series are many times longer
-    /// than those of other methods: they are divided into half as many parts as their order, so that no more is missed than
+    /// Where within the step, from 0 at its beginning to 1 at its end, functions without a formula are looked at. Steps of power series are many
+    /// times longer than those of other methods: they are divided into half as many parts as their order, so that no more is missed than
     /// with short steps.
-    fn looks(&self) -> Vec<f64> {
+    fn parts(&self) -> Vec<f64> {
         let order = self.step.series().map_or(0, |series| series.order());
         let parts = (order / 2).max(1);
-        self.within((1..parts).map(|k| k as f64 / parts as f64).collect())
+        (1..parts).map(|k| k as f64 / parts as f64).collect()
     }
 
     /// The times at these parts of the step, and its end.
@@ -177,8 +177,8 @@ impl<'p, 'a, E> Watch<'p, 'a, E> {
             degree: plan.method().dense_degree(),
             time,
             values,
+            parts: vec![MOST_PARTS[1]; functions.len()],
             functions,
-            parts: MOST_PARTS[1],
             sampled: 0,
             outcome,
         })
@@ -239,19 +239,19 @@ impl<'p, 'a, E> Watch<'p, 'a, E> {
     /// The times within the step, and its end, at which the function of an event is looked at.
     fn looks(&mut self, seen: &Seen<'_, '_>, i: usize) -> Vec<f64> {
         let Some(formula) = &self.asked.events[i].formula else {
-            return seen.looks();
+            return seen.within(seen.parts());
         };
-        let most = MOST_PARTS[0].min(self.parts);
-        if most == 0 {
-            self.outcome.undecided[i] = true;
-            return seen.looks();
-        }
         let mut step = IvpSolution::new(self.plan.chart, seen.begin.0);
         step.push(seen.step, seen.end.0, self.degree);
-        let made = formula.parts(&step, most);
-        self.parts -= made.count;
-        self.outcome.undecided[i] |= made.undecided;
-        seen.within(made.inner)
+        let made = formula.parts(&step, MOST_PARTS[0].min(self.parts[i]));
+        self.parts[i] -= made.count;
+        let mut inner = made.inner;
+        if made.undecided {
+            self.outcome.undecided[i] = true;
+            inner.extend(seen.parts());
+            inner.sort_by(f64::total_cmp);
+        }
+        seen.within(inner)
     }
 
     /// Finds the zeros of an event since the last look.
