@@ -25,7 +25,8 @@ type Function<'a, E> = dyn FnMut(f64, &[f64]) -> Result<f64, Halt<E>> + 'a;
 /// An event: a zero of a function of time and values. The function is looked at at the end of each step, and within steps of power
 /// series, which are long, half as many times as their order. An event is found where the function has another sign than at the last
 /// look, or is 0 at either; of several zeros between two looks one is found, or none. As in SciPy, a function that is 0 to the bit at the
-/// end of a step has an event in this step and in the next. Of a function that is a formula no zero is missed.
+/// end of a step has an event in this step and in the next. Of a function that is a formula no
+/// zero is missed, but where [`IvpOutcome::undecided`](super::IvpOutcome::undecided) says so.
 pub struct IvpEvent<'a, E> {
     /// Of the user's time and values.
     pub function: Box<Function<'a, E>>,

@@ -88,8 +88,10 @@ impl IvpPlan {
     }
 }
 
-/// The parts of steps that are looked at for the zeros of a formula, in one step and in a run.
-const MOST_PARTS: [usize; 2] = [1 << 16, 1 << 19];
+/// The parts of a step that are looked at for the zeros of a formula.
+const MOST_PARTS: usize = 1 << 16;
+/// So many in each step are no more than usual, and those of a run beyond them are no more than these.
+const USUAL_PARTS: [usize; 2] = [1 << 6, 1 << 16];
 
 /// Sees the steps of a run.
 struct Watch<'p, 'a, E> {
@@ -102,7 +104,7 @@ struct Watch<'p, 'a, E> {
     values: Vec<f64>,
     /// When the function of each event was looked at last, and what it was.
     functions: Vec<(f64, f64)>,
-    /// How many parts of steps are still looked at for the zeros of each formula.
+    /// How many more parts of steps than usual are still looked at for the zeros of each formula.
     parts: Vec<usize>,
     /// How many of the times that are asked for have their row.
     sampled: usize,
@@ -177,7 +179,7 @@ impl<'p, 'a, E> Watch<'p, 'a, E> {
             degree: plan.method().dense_degree(),
             time,
             values,
-            parts: vec![MOST_PARTS[1]; functions.len()],
+            parts: vec![USUAL_PARTS[1]; functions.len()],
             functions,
             sampled: 0,
             outcome,
@@ -243,8 +245,9 @@ impl<'p, 'a, E> Watch<'p, 'a, E> {
         };
         let mut step = IvpSolution::new(self.plan.chart, seen.begin.0);
         step.push(seen.step, seen.end.0, self.degree);
-        let made = formula.parts(&step, MOST_PARTS[0].min(self.parts[i]));
-        self.parts[i] -= made.count;
+        let [usual, _] = USUAL_PARTS;
+        let made = formula.parts(&step, MOST_PARTS.min(usual + self.parts[i]));
+        self.parts[i] -= made.count.saturating_sub(usual);
         let mut inner = made.inner;
         if made.undecided {
             self.outcome.undecided[i] = true;
