@@ -71,6 +71,7 @@ mod internals;
 mod invariant_planes;
 mod ivp;
 mod ivp_events;
+mod ivp_formulas;
 mod ivp_solutions;
 #[cfg(target_arch = "x86_64")]
 mod kernels;

@@ -9,8 +9,8 @@ use twinslip::Error;
 use twinslip::cli::parsed;
 use twinslip::integrate::Control;
 use twinslip::scene::{
-    Command, Halt, IntegrateOptions, IvpAsked, IvpError, IvpEvent, IvpOutcome, IvpParts, IvpPlan,
-    IvpSolution,
+    Command, Halt, IntegrateOptions, IvpAsked, IvpError, IvpEvent, IvpFormula, IvpOutcome,
+    IvpParts, IvpPlan, IvpSolution,
 };
 
 /// Between two looks at whether Ctrl-C was pressed.
@@ -20,8 +20,21 @@ const STEPS: u32 = 16;
 
 type Array<'py> = Bound<'py, PyArray1<f64>>;
 
-/// An event: the function, its direction, and after how many it ends the run.
-type Event = (Py<PyAny>, f64, Option<usize>);
+/// An event: the function, or its formula as text; its direction, after how many it ends the run, and the side on which it begins.
+type Event = (Asked, f64, Option<usize>, Option<f64>);
+
+/// What an event is of, as it is given.
+#[derive(FromPyObject)]
+pub enum Asked {
+    Formula(String),
+    Function(Py<PyAny>),
+}
+
+/// The same, read.
+enum Source {
+    Formula(IvpFormula),
+    Function(Py<PyAny>),
+}
 
 /// What a run came to.
 #[pyclass(frozen, module = "twinslip._core")]
@@ -52,6 +65,11 @@ impl IvpRun {
     fn y_events<'py>(&self, py: Python<'py>) -> Vec<Array<'py>> {
         let all = self.outcome.y_events.iter();
         all.map(|values| values.clone().into_pyarray(py)).collect()
+    }
+
+    /// For each event whether not all of its zeros are isolated, though it is a formula.
+    fn undecided(&self) -> Vec<bool> {
+        self.outcome.undecided.clone()
     }
 
     /// The solution as a function of time, where it was asked for.
@@ -186,6 +204,17 @@ pub fn solve_ivp(
         Ok(plan) => plan,
         Err(error) => return refused(error),
     };
+    let mut asked = Vec::new();
+    for (of, direction, terminal, side) in events {
+        let source = match of {
+            Asked::Function(function) => Source::Function(function),
+            Asked::Formula(text) => match IvpFormula::parse(&text, plan.dimension()) {
+                Ok(formula) => Source::Formula(formula),
+                Err(error) => return refused(error),
+            },
+        };
+        asked.push((source, direction, terminal, side));
+    }
     // Ctrl-C comes between steps, or while a function of an event runs.
     let raised: Mutex<Option<PyErr>> = Mutex::default();
     let stop = |error: PyErr| *raised.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
@@ -198,20 +227,24 @@ pub fn solve_ivp(
                 Control::Stop
             }
         };
-        let events = events
-            .iter()
-            .map(|(function, direction, terminal)| IvpEvent {
-                direction: *direction,
-                terminal: *terminal,
-                ..IvpEvent::new(|t, y| {
-                    called(function, t, y).map_err(|error| match interrupts(&error) {
-                        true => {
-                            stop(error);
-                            Halt::Stop
-                        }
-                        false => Halt::Failed(error),
-                    })
-                })
+        let events = asked
+            .into_iter()
+            .map(|(source, direction, terminal, side)| IvpEvent {
+                direction,
+                terminal,
+                side,
+                ..match source {
+                    Source::Formula(formula) => IvpEvent::of(formula),
+                    Source::Function(function) => IvpEvent::new(move |t, y| {
+                        called(&function, t, y).map_err(|error| match interrupts(&error) {
+                            true => {
+                                stop(error);
+                                Halt::Stop
+                            }
+                            false => Halt::Failed(error),
+                        })
+                    }),
+                }
             });
         plan.solve(IvpAsked {
             times: times.as_deref(),

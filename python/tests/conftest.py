@@ -16,6 +16,12 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 VARIABLE = "TWINSLIP_BINARY"
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    """The marks of SciPy's own tests."""
+    for mark in ("fail_slow", "slow", "thread_unsafe"):
+        config.addinivalue_line("markers", f"{mark}: SciPy's")
+
+
 @pytest.fixture(scope="session")
 def binary() -> Path:
     """The command. Where it is not there tests fail: they say nothing without it."""

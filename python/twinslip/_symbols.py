@@ -8,9 +8,12 @@ from __future__ import annotations
 
 import math
 import numbers
-from typing import Any, Callable
+from typing import TYPE_CHECKING, Any, Callable
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from ._decisions import Decisions
 
 #: Formulas have no more operations, all together.
 MOST_OPERATIONS = 10_000
@@ -33,6 +36,9 @@ NO_STEPS = (
 )
 
 
+NO_TRUTH = "a symbol is neither true nor false: use a comparison in its place, as y[0] > 0"
+
+
 class Operation:
     """One operation: what it does, of which others, and the name or number that it is."""
 
@@ -50,17 +56,20 @@ class Operation:
 class Formulas:
     """The operations of a function, each behind those that it is made of."""
 
-    def __init__(self) -> None:
+    def __init__(self, most: int = MOST_OPERATIONS) -> None:
+        self._most = most
         self.operations: list[Operation] = []
+        #: What decides comparisons and steps, where something does.
+        self.decisions: Decisions | None = None
         self._places: dict[tuple[Any, ...], int] = {}
 
     def _place(self, key: tuple[Any, ...], operation: Operation) -> Symbol:
         place = self._places.get(key)
         if place is None:
             place = len(self.operations)
-            if place >= MOST_OPERATIONS:
+            if place >= self._most:
                 raise ValueError(
-                    f"f: its formulas have more than {MOST_OPERATIONS} operations, which is the "
+                    f"f: its formulas have more than {self._most} operations, which is the "
                     "most allowed"
                 )
             self._places[key] = place
@@ -109,6 +118,18 @@ class Formulas:
             )
         return None
 
+    def compared(self, operator: str, a: object, b: object) -> bool:
+        """Whether a comparison of symbols or numbers holds."""
+        if self.decisions is None:
+            raise TypeError(NO_CHOICE)
+        return self.decisions.compare(operator, self.needed(a), self.needed(b))
+
+    def floor(self, a: Symbol) -> Symbol:
+        """The largest whole number that is no larger."""
+        if self.decisions is None:
+            raise TypeError(NO_STEPS)
+        return self.decisions.floor(a)
+
     def needed(self, value: object) -> Symbol:
         """A symbol or number as a symbol."""
         symbol = self.symbol(value)
@@ -117,7 +138,7 @@ class Formulas:
         return symbol
 
 
-def _binary(operation: Callable[[Symbol, Symbol], Symbol], turned: bool = False) -> Any:
+def _binary(operation: Callable[[Symbol, Symbol], Any], turned: bool = False) -> Any:
     """A method for two operands; `turned` where the symbol is the second one."""
 
     def method(self: Symbol, other: object) -> Any:
@@ -207,6 +228,47 @@ def _power(a: Symbol, b: Symbol) -> Symbol:
     return a.formulas.made("^", a, b)
 
 
+def _compared(operator: str) -> Any:
+    """A method that compares with another one, where something decides that."""
+
+    def method(self: Symbol, other: object) -> Any:
+        if isinstance(other, np.ndarray) and other.ndim > 0:
+            return NotImplemented
+        return self.formulas.compared(operator, self, other)
+
+    return method
+
+
+def _extreme(name: str) -> Callable[[Symbol, Symbol], Symbol]:
+    """The lesser or greater of two, which has a kink unless it is decided which that is."""
+
+    def made(a: Symbol, b: Symbol) -> Symbol:
+        decisions = a.formulas.decisions
+        if decisions is None or not decisions.kinks:
+            return a.formulas.called(name, a, b)
+        first = a <= b if name == "min" else a >= b
+        return a if first else b
+
+    return made
+
+
+least = _extreme("min")
+greatest = _extreme("max")
+
+
+def _whole(a: Symbol, b: Symbol) -> Symbol:
+    quotient: Symbol = a / b
+    return a.formulas.floor(quotient)
+
+
+def _rest(a: Symbol, b: Symbol) -> Symbol:
+    return a - b * _whole(a, b)  # type: ignore[no-any-return]
+
+
+def _both(a: Symbol, b: Symbol) -> tuple[Symbol, Symbol]:
+    return _whole(a, b), _rest(a, b)
+
+
 def _refused(sentence: str) -> Any:
     """A method of any arguments that is none for symbols."""
 
@@ -281,7 +343,10 @@ class Symbol:
         return self.operand() if self.kind == "negative" else self.formulas.made("negative", self)
 
     def __abs__(self) -> Symbol:
-        return self.call("abs")
+        decisions = self.formulas.decisions
+        if decisions is None or not decisions.kinks:
+            return self.call("abs")
+        return self if self >= 0.0 else -self
 
     def conjugate(self) -> Symbol:
         """It is real."""
@@ -292,29 +357,35 @@ class Symbol:
         lower = self if least is None else self.maximum(least)
         return lower if largest is None else lower.minimum(largest)
 
-    __bool__ = _refused(NO_CHOICE)
-    __lt__ = _refused(NO_CHOICE)
-    __le__ = _refused(NO_CHOICE)
-    __gt__ = _refused(NO_CHOICE)
-    __ge__ = _refused(NO_CHOICE)
-    __eq__ = _refused(NO_CHOICE)
-    __ne__ = _refused(NO_CHOICE)
+    def __bool__(self) -> bool:
+        raise TypeError(NO_CHOICE if self.formulas.decisions is None else NO_TRUTH)
+
+    __lt__ = _compared("<")
+    __le__ = _compared("<=")
+    __gt__ = _compared(">")
+    __ge__ = _compared(">=")
+    __eq__ = _compared("==")
+    __ne__ = _compared("!=")
     __hash__ = object.__hash__
 
     __float__ = _refused(NO_NUMBER)
     __int__ = _refused(NO_NUMBER)
     __complex__ = _refused(NO_NUMBER)
 
-    __mod__ = _refused(NO_STEPS)
-    __rmod__ = _refused(NO_STEPS)
-    __floordiv__ = _refused(NO_STEPS)
-    __rfloordiv__ = _refused(NO_STEPS)
-    __divmod__ = _refused(NO_STEPS)
-    __rdivmod__ = _refused(NO_STEPS)
+    __mod__ = _binary(_rest)
+    __rmod__ = _binary(_rest, turned=True)
+    __floordiv__ = _binary(_whole)
+    __rfloordiv__ = _binary(_whole, turned=True)
+    __divmod__ = _binary(_both)
+    __rdivmod__ = _binary(_both, turned=True)
     __round__ = _refused(NO_STEPS)
-    __floor__ = _refused(NO_STEPS)
-    __ceil__ = _refused(NO_STEPS)
     __trunc__ = _refused(NO_STEPS)
+
+    def __floor__(self) -> Symbol:
+        return self.formulas.floor(self)
+
+    def __ceil__(self) -> Symbol:
+        return -self.formulas.floor(-self)
 
     # The functions are made of symbols, and so come after them.
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **options: Any) -> Any:

@@ -7,17 +7,15 @@ from typing import Any, Callable
 
 import numpy as np
 
-from ._symbols import NO_CHOICE, Formulas, Symbol
+from ._symbols import NO_CHOICE, Formulas, Symbol, greatest, least
 
 #: Those that formulas have, by the names that numpy gives to them.
 _CALLS = {
-    "absolute": "abs",
     "arcsinh": "asinh",
     "arctan": "atan",
     "cos": "cos",
     "cosh": "cosh",
     "exp": "exp",
-    "fabs": "abs",
     "log": "ln",
     "log10": "log10",
     "sin": "sin",
@@ -30,10 +28,6 @@ _CALLS = {
 
 def _call(name: str) -> Callable[[Symbol], Symbol]:
     return lambda a: a.call(name)
-
-
-def _call_of_two(name: str) -> Callable[[Symbol, Symbol], Symbol]:
-    return lambda a, b: a.formulas.called(name, a, b)
 
 
 def _expm1(a: Symbol) -> Symbol:
@@ -78,6 +72,7 @@ def _hypot(a: Symbol, b: Symbol) -> Symbol:
 #: All that there are, each of one or two symbols.
 FUNCTIONS: dict[str, Callable[..., Symbol]] = {
     **{name: _call(called) for name, called in _CALLS.items()},
+    "absolute": abs,
     "add": lambda a, b: a + b,
     "arccos": _arccos,
     "arccosh": _arccosh,
@@ -87,14 +82,15 @@ FUNCTIONS: dict[str, Callable[..., Symbol]] = {
     "divide": lambda a, b: a / b,
     "exp2": lambda a: 2.0**a,
     "expm1": _expm1,
+    "fabs": abs,
     "float_power": lambda a, b: a**b,
-    "fmax": _call_of_two("max"),
-    "fmin": _call_of_two("min"),
+    "fmax": greatest,
+    "fmin": least,
     "hypot": _hypot,
     "log1p": _log1p,
     "log2": lambda a: a.call("ln") / math.log(2.0),
-    "maximum": _call_of_two("max"),
-    "minimum": _call_of_two("min"),
+    "maximum": greatest,
+    "minimum": least,
     "multiply": lambda a, b: a * b,
     "negative": lambda a: -a,
     "positive": lambda a: a,
@@ -109,17 +105,50 @@ for other, usual in (("conjugate", "positive"), ("degrees", "rad2deg"), ("radian
     FUNCTIONS[other] = FUNCTIONS[usual]
 
 _COMPARISONS = {
-    "equal",
-    "greater",
-    "greater_equal",
-    "less",
-    "less_equal",
-    "logical_and",
-    "logical_not",
-    "logical_or",
-    "logical_xor",
-    "not_equal",
+    "equal": "==",
+    "greater": ">",
+    "greater_equal": ">=",
+    "less": "<",
+    "less_equal": "<=",
+    "not_equal": "!=",
 }
+#: What is decided by whether a symbol is 0.
+_LOGIC = {"logical_and", "logical_not", "logical_or", "logical_xor"}
+
+
+def _sign(a: Symbol) -> Symbol:
+    return a.formulas.number(1.0 if a > 0.0 else -1.0 if a < 0.0 else 0.0)
+
+
+def _arctan2(y: Symbol, x: Symbol) -> Symbol:
+    # Of each quarter by a quotient no larger than 1.
+    if x > abs(y):
+        return (y / x).call("atan")  # type: ignore[no-any-return]
+    if y > abs(x):
+        return math.pi / 2.0 - (x / y).call("atan")  # type: ignore[no-any-return]
+    if y < -abs(x):
+        return -math.pi / 2.0 - (x / y).call("atan")  # type: ignore[no-any-return]
+    turn = math.pi if y >= 0.0 else -math.pi
+    return (y / x).call("atan") + turn  # type: ignore[no-any-return]
+
+
+def _heaviside(a: Symbol, at_zero: Symbol) -> Symbol:
+    if a > 0.0:
+        return a.formulas.number(1.0)
+    return a.formulas.number(0.0) if a < 0.0 else at_zero
+
+
+#: Those that jump, where something decides on which side they are.
+_CHOICES: dict[str, Callable[..., Symbol]] = {
+    "arctan2": _arctan2,
+    "ceil": lambda a: -a.formulas.floor(-a),
+    "floor": lambda a: a.formulas.floor(a),
+    "floor_divide": lambda a, b: a // b,
+    "heaviside": _heaviside,
+    "remainder": lambda a, b: a % b,
+    "sign": _sign,
+}
+
 _NO_ARRAY = (
     "a symbol has no value, and so no place in an array of numbers: make the array with "
     "dtype=object"
@@ -142,15 +171,18 @@ def applied(ufunc: np.ufunc, method: str, inputs: tuple[Any, ...], options: dict
         For a function that no formula has.
     """
     name = ufunc.__name__
-    if name in _COMPARISONS:
+    if name in _LOGIC:
         raise TypeError(NO_CHOICE)
-    function = FUNCTIONS.get(name)
+    formulas = next(value.formulas for value in inputs if isinstance(value, Symbol))
+    if name in _COMPARISONS:
+        return _decided(_COMPARISONS[name], formulas, inputs)
+    choices = {} if formulas.decisions is None else _CHOICES
+    function = choices.get(name, FUNCTIONS.get(name))
     outputs = options.pop("out", ())
     if function is None or method != "__call__" or options:
         way = name if method == "__call__" else f"{name}.{method}"
         known = ", ".join(sorted(FUNCTIONS))
         raise TypeError(f"np.{way} of a symbol can't stand in a formula, there are {known}")
-    formulas = next(value.formulas for value in inputs if isinstance(value, Symbol))
     made = _broadcast(function, formulas, inputs)
     for output in outputs:
         if output.dtype != object:
@@ -158,6 +190,17 @@ def applied(ufunc: np.ufunc, method: str, inputs: tuple[Any, ...], options: dict
         output[...] = made
         return output
     return made
+
+
+def _decided(operator: str, formulas: Formulas, inputs: tuple[Any, ...]) -> Any:
+    """A comparison, element by element."""
+    a, b = (np.asarray(value, dtype=object) for value in inputs)
+
+    def of_two(one: object, other: object) -> bool:
+        return formulas.compared(operator, one, other)
+
+    made = np.frompyfunc(of_two, 2, 1)(a, b)
+    return made if isinstance(made, bool) else np.asarray(made, dtype=bool)
 
 
 def _broadcast(function: Callable[..., Symbol], formulas: Formulas, inputs: tuple[Any, ...]) -> Any:

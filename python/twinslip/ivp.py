@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Sequence
 from typing import Any, Optional, Union
 
@@ -11,161 +10,104 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import InputError, Interrupted
-from ._values import Record
+from ._events import AskedEvent, EventFunction, traced_for_system
+from ._function_input import (
+    Numerics,
+    Problem,
+    first_step_of,
+    least_rtol,
+    spanned,
+    times_within,
+    unpacked,
+)
+from ._function_ivp import solve_function
+from ._ivp_result import MESSAGES, Array, IvpResult, OdeSolution, numbers_of, refusal
 from .system import System
 
 __all__ = ["IvpResult", "OdeSolution", "solve_ivp"]
 
-Array = npt.NDArray[np.float64]
-EventFunction = Callable[..., Any]
-
-MESSAGES = {
-    0: "The solver successfully reached the end of the integration interval.",
-    1: "A termination event occurred.",
-}
-
-
-class OdeSolution:
-    """The solution as a function of time.
-
-    Attributes
-    ----------
-    ts : ndarray, shape (n_segments + 1,)
-        The times at which steps begin and end.
-    t_min, t_max : float
-        Where it is known; outside, the first or last step goes on, which has no accuracy.
-    n_segments : int
-        The number of steps.
-    """
-
-    def __init__(self, solution: _core.Solution) -> None:
-        self._solution = solution
-        self.ts: Array = solution.times()
-        self.n_segments = len(self.ts) - 1
-        self.t_min = float(min(self.ts[0], self.ts[-1]))
-        self.t_max = float(max(self.ts[0], self.ts[-1]))
-
-    def __call__(self, t: npt.ArrayLike) -> Array:
-        """The values at a time or at many.
-
-        Parameters
-        ----------
-        t : float or array_like, shape (m,)
-            Times.
-
-        Returns
-        -------
-        ndarray, shape (n,) or (n, m)
-            Values.
-        """
-        times = _array("t", t)
-        if times.ndim > 1:
-            raise InputError(f"t has {times.ndim} dimensions, but must be a number or have 1", "t")
-        values = self._solution.at(times.reshape(-1).tolist())
-        n = self._solution.dimension
-        return values.reshape(n) if times.ndim == 0 else values.reshape(-1, n).T
-
-    def __reduce__(self) -> Any:
-        return (OdeSolution, (self._solution,))
-
-
-class IvpResult(Record):
-    """What :func:`solve_ivp` gives: the fields of SciPy.
-
-    Attributes
-    ----------
-    t : ndarray, shape (n_points,)
-        Times.
-    y : ndarray, shape (n, n_points)
-        Values at these times.
-    sol : OdeSolution or None
-        The solution as a function of time, where it was asked for.
-    t_events, y_events : list of ndarray, shapes (k,) and (k, n), or None
-        For each event its times, and the values there; None where there are no events to look for.
-    nfev, njev, nlu : int
-        Evaluations of f and of its Jacobian, factorisations.
-    status : int
-        0: the end was reached; 1: a terminal event; -1: it went no further.
-    message : str
-        That in words.
-    success : bool
-        Whether the status is 0 or 1.
-    """
-
-    t: Array
-    y: Array
-    sol: Optional[OdeSolution]
-    t_events: Optional[list[Array]]
-    y_events: Optional[list[Array]]
-    nfev: int
-    njev: int
-    nlu: int
-    status: int
-    message: str
-    success: bool
-
-    def __repr__(self) -> str:
-        return f"Ivp{super().__repr__().replace('Record', 'Result', 1)}"
-
-    def __reduce__(self) -> Any:
-        return (IvpResult, (dict(self),))
+RateFunction = Callable[..., Any]
 
 
 def solve_ivp(
-    system: System,
-    t_span: npt.ArrayLike,
-    y0: npt.ArrayLike,
-    method: str = "auto",
+    fun: Union[System, RateFunction, None] = None,
+    t_span: Optional[npt.ArrayLike] = None,
+    y0: Optional[npt.ArrayLike] = None,
+    method: Any = "auto",
     t_eval: Optional[npt.ArrayLike] = None,
     dense_output: bool = False,
     events: Union[EventFunction, Sequence[EventFunction], None] = None,
     vectorized: bool = False,
     args: Optional[Sequence[Any]] = None,
     *,
-    rtol: float = 1e-8,
-    atol: Optional[float] = None,
+    system: Optional[System] = None,
+    rtol: Union[float, npt.ArrayLike] = 1e-8,
+    atol: Union[float, npt.ArrayLike, None] = None,
     max_steps: Optional[int] = None,
     jac: Any = None,
     first_step: Optional[float] = None,
     max_step: float = np.inf,
+    jac_sparsity: Any = None,
+    lband: Optional[int] = None,
+    uband: Optional[int] = None,
+    min_step: float = 0.0,
 ) -> IvpResult:
-    """Solves an initial value problem; a call of SciPy's needs another first argument.
+    """Solves an initial value problem, of a function as SciPy takes it or of a system.
 
     Parameters
     ----------
-    system : System
-        What is integrated, in place of a function.
+    fun : callable or System
+        ``fun(t, y, *args)`` gives the rates of 1 to 8 values, as in SciPy. It is called once, with
+        symbols, and again wherever one of its comparisons changes: arithmetic, numpy's functions
+        of each element and those of ``math``, indexing, slices, loops, arrays, ``np.where`` and
+        ``if`` go, steps such as ``t % 1`` too. Runs end and begin again where a comparison
+        changes, as exactly as anywhere. With t in the rates there may be 7 values. A System is
+        taken too, also by the name ``system``.
     t_span : (float, float)
-        Where it begins and ends [L/V*; s in SI]; backward in time where the end is the smaller
-        one.
+        Where it begins and ends [of interfaces L/V*; s in SI]; backward in time where the end is
+        the smaller one. Of a function the end may be infinite.
     y0 : array_like, shape (n,)
-        The start: (tau, psi_1, psi_2, ...) of interfaces, or the states of a system of one's own.
-    method : str
+        The start: real values; of interfaces (tau, psi_1, psi_2, ...).
+    method : str or class
         ``"auto"``, ``"taylor"``, ``"rodas5p"``, ``"rodas4"``, ``"rosenbrock23"``,
-        ``"cvode-bdf"`` or ``"cvode-adams"``.
+        ``"cvode-bdf"`` or ``"cvode-adams"``. Of a function also SciPy's: ``"RK23"``, ``"RK45"`` and
+        ``"DOP853"`` are ``"taylor"``, ``"Radau"``, ``"BDF"`` and ``"LSODA"`` are ``"auto"``; the first
+        two look at the Jacobian first, and are ``"rodas5p"`` where the problem is stiff from its
+        start. The message says so, but where an event ends the run, as scripts compare that one.
     t_eval : array_like, optional
         Times at which the solution is kept, within the span and in its order; else the ends of
         all steps.
     dense_output : bool
         Whether ``sol`` is made.
     events : callable or sequence of callables, optional
-        ``event(t, y)``, whose zeros are found; with the attributes ``terminal`` (True, or after
-        how many the run ends) and ``direction`` (only upwards if positive, only downwards if
-        negative, along the run). What it raises comes through.
+        ``event(t, y, *args)``, whose zeros are found; with the attributes ``terminal`` (True, or
+        after how many the run ends) and ``direction`` (only upwards if positive, only downwards if
+        negative, along the run). It is called with symbols too, and the zeros of its formula are
+        isolated within each step, so that none is missed. One that has no formula is looked at at
+        the ends of steps and, within the long ones of power series, at half as many points as
+        their order: two zeros between two looks are missed. Of a function the message says so. What
+        it raises comes through.
+    vectorized : bool
+        Whether the function takes an array of columns.
     args : sequence, optional
-        More arguments of the events.
-    rtol, atol : float
-        Local error tolerances, each one number; of interfaces they are of tau and ln psi,
-        dimensionless. atol is rtol unless it is given.
+        More arguments of the function and the events.
+    system : System, optional
+        Another name of the first argument.
+    rtol : float or array_like
+        Relative tolerance of a step. Of several the smallest holds for all.
+    atol : float or array_like, shape (n,), optional
+        Absolute tolerance, rtol unless it is given. Of a function each value may have its own, which
+        is rounded down to a power of two times the largest. Of interfaces it is of tau and ln psi,
+        dimensionless.
     max_steps : int, optional
-        Give up after so many steps.
-    vectorized, jac, first_step
-        Taken as SciPy takes them, and not needed: derivatives are exact, and the first step finds
-        itself.
+        Give up after so many steps; of a function that compares, between two changes.
+    jac, jac_sparsity, lband, uband, min_step
+        Taken as SciPy takes them, and not needed: derivatives are exact. ``njev`` is 0 with a matrix.
+    first_step : float, optional
+        Of a function the first step ends there, or before where the tolerances ask for that.
     max_step : float
-        The largest step in time, for what is shorter than a step: a pulse that begins and ends
-        within one is seen by no method. Long steps of power series are looked at for events in half as many parts
-        as their order; two zeros within one part are missed, as by SciPy within a step.
+        The largest step in time, for what is shorter than a step: a smooth pulse that begins and
+        ends within one is seen by no method.
 
     Returns
     -------
@@ -177,26 +119,57 @@ def solve_ivp(
     ValueError
         If the input is to blame; its ``field`` is the argument.
     """
-    del vectorized, jac, first_step
-    if not isinstance(system, System):
-        hint = "; make one with System.from_function" if callable(system) else ""
-        raise InputError(f"system is {system!r}, but must be a twinslip.System{hint}", "system")
-    if not (isinstance(max_step, (int, float, np.number)) and max_step > 0):
-        raise InputError(f"max_step is {max_step!r}, but must be a positive number", "max_step")
-    span = _numbers("t_span", t_span)
-    if len(span) != 2:
-        raise InputError(f"t_span is {t_span!r}, but must be two times", "t_span")
-    start = _numbers("y0", y0)
-    times = None if t_eval is None else _numbers("t_eval", t_eval)
+    del jac_sparsity, lband, uband, min_step
+    if fun is not None and system is not None:
+        raise InputError("system is given twice, as the first argument and by its name", "system")
     # A class of SciPy's is told by its name, as the names of SciPy are.
     named = method if isinstance(method, str) else getattr(method, "__name__", repr(method))
-    words = system._solver_words(named, rtol, atol, None if max_step == np.inf else max_step, max_steps)
-    told = _events(events, args)
+    if not (isinstance(max_step, (int, float, np.number)) and max_step > 0):
+        raise InputError(f"max_step is {max_step!r}, but must be a positive number", "max_step")
+    largest = None if max_step == np.inf else float(max_step)
+    if callable(fun) and not isinstance(fun, System):
+        more = unpacked(args)
+        span, start = spanned(t_span, y0)
+        step = None if first_step is None else first_step_of(first_step, span)
+        return solve_function(
+            Problem(
+                fun,
+                span,
+                start,
+                None if t_eval is None else times_within(t_eval, span),
+                None if events is None else _events(events, more),
+                more,
+                Numerics(named, least_rtol(rtol), atol, largest, max_steps, step),
+                bool(dense_output),
+                bool(vectorized),
+                jac is not None and not callable(jac),
+            )
+        )
+    known = fun if system is None else system
+    if not isinstance(known, System):
+        hint = "; make one with System.from_function" if callable(known) else ""
+        raise InputError(
+            f"system is {known!r}, but must be a twinslip.System, or a function fun(t, y) as the first argument{hint}",
+            "system",
+        )
+    ends = numbers_of("t_span", t_span)
+    if len(ends) != 2:
+        raise InputError(f"t_span is {t_span!r}, but must be two times", "t_span")
+    start = numbers_of("y0", y0)
+    times = None if t_eval is None else numbers_of("t_eval", t_eval)
+    words = known._solver_words(named, rtol, atol, largest, max_steps)
+    try:
+        more = () if args is None else tuple(args)
+    except TypeError:
+        told = f"args is {args!r}, but must be a sequence, such as ({args!r},)"
+        raise InputError(told, "args") from None
+    found = [traced_for_system(one, more, len(start)) for one in _events(events, more)]
+    given = [(one.given, one.asked.way, one.asked.most, None) for one in found]
     run, refused, raised = _core.solve_ivp(
-        words, (span[0], span[1]), start, times, told, bool(dense_output)
+        words, (ends[0], ends[1]), start, times, given, bool(dense_output)
     )
     if refused is not None:
-        raise _refusal(*refused)
+        raise refusal(*refused)
     assert run is not None
     result = _result(run, events is not None)
     if raised is not None:
@@ -225,45 +198,9 @@ def _result(run: _core.IvpRun, has_events: bool) -> IvpResult:
     )
 
 
-def _refusal(field: Optional[str], message: str) -> InputError:
-    """What the input is refused for, in the names of SciPy."""
-    for ours, theirs in (("start", "y0"), ("span", "t_span"), ("t_eval", "t_eval")):
-        if field is not None and re.search(rf"\b{ours}\b", field):
-            message = re.sub(r"(?<![\w])start(?=\b)", "y0", message)
-            message = re.sub(r"(?<![\w])span(?=\b)", "t_span", message)
-            return InputError(message, theirs)
-    return InputError(message, field)
-
-
-def _array(field: str, values: npt.ArrayLike) -> Array:
-    try:
-        given = np.asarray(values)
-        if given.dtype.kind in "biuf":
-            return given.astype(np.float64)
-        # Numbers of other kinds, such as fractions; imaginary parts are not dropped.
-        if given.dtype.kind == "O":
-            return np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError):
-        pass
-    raise InputError(f"{field} is {values!r}, but must be numbers", field)
-
-
-def _numbers(field: str, values: npt.ArrayLike) -> list[float]:
-    array = np.atleast_1d(_array(field, values))
-    if array.ndim != 1:
-        raise InputError(f"{field} has {array.ndim} dimensions, but must have 1", field)
-    numbers: list[float] = array.tolist()
-    return numbers
-
-
 def _events(
-    events: Union[EventFunction, Sequence[EventFunction], None], args: Optional[Sequence[Any]]
-) -> list[tuple[EventFunction, float, Optional[int]]]:
-    try:
-        more = () if args is None else tuple(args)
-    except TypeError:
-        told = f"args is {args!r}, but must be a sequence, such as ({args!r},)"
-        raise InputError(told, "args") from None
+    events: Union[EventFunction, Sequence[EventFunction], None], more: tuple[Any, ...]
+) -> list[AskedEvent]:
     if events is None:
         return []
     if callable(events):
@@ -276,9 +213,7 @@ def _events(
     return [_event(function, more) for function in functions]
 
 
-def _event(
-    function: EventFunction, more: tuple[Any, ...]
-) -> tuple[EventFunction, float, Optional[int]]:
+def _event(function: EventFunction, more: tuple[Any, ...]) -> AskedEvent:
     if not callable(function):
         raise InputError(f"events has {function!r}, but must have functions", "events")
     terminal: Any = getattr(function, "terminal", None)
@@ -290,7 +225,8 @@ def _event(
         right = False
     if not right:
         must = "True, False or a whole number, not negative"
-        raise InputError(f"events has a `terminal` of {terminal!r}, but must have {must}", "events")
+        told = f"The `terminal` attribute of one of the events is {terminal!r}, but must be {must}"
+        raise InputError(told, "events")
     try:
         way = 0.0 if direction is None else float(direction)
     except (TypeError, ValueError, OverflowError):
@@ -300,6 +236,10 @@ def _event(
         raise InputError(told, "events")
 
     def called(t: float, y: Array) -> float:
-        return float(function(t, y, *more))
+        made = function(t, y, *more)
+        # SciPy takes arrays of one value too.
+        return float(
+            made.reshape(-1)[0] if isinstance(made, np.ndarray) and made.size == 1 else made
+        )
 
-    return called, way, most or None
+    return AskedEvent(function, called, way, most or None)

@@ -77,7 +77,9 @@ pub use general::{
     Subject, TextSubject, plane, shown,
 };
 pub use instant::{Instant, run_columns};
-pub use ivp::{Halt, IvpAsked, IvpError, IvpEvent, IvpOutcome, IvpParts, IvpPlan, IvpSolution};
+pub use ivp::{
+    Halt, IvpAsked, IvpError, IvpEvent, IvpFormula, IvpOutcome, IvpParts, IvpPlan, IvpSolution,
+};
 pub use law::{LawCurve, LawLandmarks, LawPlan, LawPoint, Together};
 pub use locus::{CurveChoice, LocusPlan};
 pub use many::{

@@ -1,6 +1,7 @@
 //! Between the values that the user knows and the variables that are integrated.
 
 use crate::error::{Error, Result};
+use crate::number::Real;
 use crate::scene::units::{Quantity, Units};
 
 /// What the variables of a field mean: of interfaces the first is tau and the others are ln psi, dimensionless; of a system all are
@@ -69,6 +70,24 @@ impl Chart {
         if self.doubled {
             into.extend(y.last().map(psi));
         }
+    }
+
+    /// The user's values, in numbers of any kind.
+    pub fn outward_of<T: Real>(&self, y: &[T], given: Given) -> Vec<T> {
+        if !self.slides {
+            return y.to_vec();
+        }
+        let [_, stress, state] = self.units;
+        let psi = |&x: &T| match given {
+            Given::Variables => x.exp() * state,
+            Given::States => x * state,
+        };
+        let mut values = vec![y[0] * stress];
+        values.extend(y[1..].iter().map(psi));
+        if self.doubled {
+            values.extend(y.last().map(psi));
+        }
+        values
     }
 
     /// As numbers.

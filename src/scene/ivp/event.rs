@@ -1,6 +1,8 @@
 //! Events: zeros of functions of time and state.
 
+use super::formula::IvpFormula;
 use std::fmt;
+use std::sync::Arc;
 
 /// Why a function that is called ends the run.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -23,7 +25,8 @@ type Function<'a, E> = dyn FnMut(f64, &[f64]) -> Result<f64, Halt<E>> + 'a;
 /// An event: a zero of a function of time and values. The function is looked at at the end of each step, and within steps of power
 /// series, which are long, half as many times as their order. An event is found where the function has another sign than at the last
 /// look, or is 0 at either; of several zeros between two looks one is found, or none. As in SciPy, a function that is 0 to the bit at the
-/// end of a step has an event in this step and in the next.
+/// end of a step has an event in this step and in the next. Of a function that is a formula no
+/// zero is missed, but where [`IvpOutcome::undecided`](super::IvpOutcome::undecided) says so.
 pub struct IvpEvent<'a, E> {
     /// Of the user's time and values.
     pub function: Box<Function<'a, E>>,
@@ -31,6 +34,12 @@ pub struct IvpEvent<'a, E> {
     pub direction: f64,
     /// After so many of these events the run ends, at the last of them; never where it is `None` or 0.
     pub terminal: Option<usize>,
+    /// The function as a formula, where it is one: by it the parts of a step are found in which there is one zero at most, and the function
+    /// is looked at between these.
+    pub formula: Option<Arc<IvpFormula>>,
+    /// The side on which the run begins, positive or negative, of a function that may be 0 there but for rounding: an event is then only
+    /// where it comes to the other side.
+    pub side: Option<f64>,
 }
 
 impl<'a, E> IvpEvent<'a, E> {
@@ -40,6 +49,26 @@ impl<'a, E> IvpEvent<'a, E> {
             function: Box::new(function),
             direction: 0.0,
             terminal: None,
+            formula: None,
+            side: None,
+        }
+    }
+
+    /// Zeros of a formula, likewise.
+    pub fn of(formula: IvpFormula) -> Self {
+        let formula = Arc::new(formula);
+        let function = Arc::clone(&formula);
+        IvpEvent {
+            formula: Some(formula),
+            ..Self::new(move |time, values| Ok(function.at(time, values)))
+        }
+    }
+
+    /// What the function counts as where the run begins.
+    pub(super) fn beginning(&self, value: f64) -> f64 {
+        match self.side {
+            Some(side) if value * side <= 0.0 => f64::MIN_POSITIVE.copysign(side),
+            _ => value,
         }
     }
 
@@ -47,6 +76,13 @@ impl<'a, E> IvpEvent<'a, E> {
     pub(super) fn is_between(&self, before: f64, after: f64) -> bool {
         let up = before <= 0.0 && after >= 0.0;
         let down = before >= 0.0 && after <= 0.0;
+        if let Some(side) = self.side {
+            return if side > 0.0 {
+                before >= 0.0 && after < 0.0
+            } else {
+                before <= 0.0 && after > 0.0
+            };
+        }
         let way = self.direction;
         (up && way > 0.0) || (down && way < 0.0) || ((up || down) && way == 0.0)
     }

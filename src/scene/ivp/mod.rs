@@ -32,12 +32,14 @@
 
 mod chart;
 mod event;
+mod formula;
 mod outcome;
 mod plan;
 mod run;
 mod solution;
 
 pub use event::{Halt, IvpEvent};
+pub use formula::IvpFormula;
 pub use outcome::{IvpAsked, IvpError, IvpOutcome};
 pub use plan::IvpPlan;
 pub use solution::{IvpParts, IvpSolution};

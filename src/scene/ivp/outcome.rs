@@ -51,6 +51,8 @@ pub struct IvpOutcome {
     pub t_events: Vec<Vec<f64>>,
     /// For each event the values at these times, one after the other.
     pub y_events: Vec<Vec<f64>>,
+    /// Whether of each event that is a formula there are parts of the run of which it is not known how many zeros they have.
+    pub undecided: Vec<bool>,
     /// The solution as a function of time, where it was asked for and there is a step of it.
     pub solution: Option<IvpSolution>,
     /// 0: the end of the span was reached; 1: a terminal event has ended it; -1: it went no further, as `failure` says.
@@ -96,6 +98,7 @@ impl IvpOutcome {
             y: Vec::new(),
             t_events: vec![Vec::new(); events],
             y_events: vec![Vec::new(); events],
+            undecided: vec![false; events],
             solution: None,
             status: 0,
             failure: None,

@@ -88,6 +88,11 @@ impl IvpPlan {
     }
 }
 
+/// The parts of a step that are looked at for the zeros of a formula.
+const MOST_PARTS: usize = 1 << 16;
+/// So many in each step are no more than usual, and those of a run beyond them are no more than these.
+const USUAL_PARTS: [usize; 2] = [1 << 6, 1 << 16];
+
 /// Sees the steps of a run.
 struct Watch<'p, 'a, E> {
     plan: &'p IvpPlan,
@@ -99,6 +104,8 @@ struct Watch<'p, 'a, E> {
     values: Vec<f64>,
     /// When the function of each event was looked at last, and what it was.
     functions: Vec<(f64, f64)>,
+    /// How many more parts of steps than usual are still looked at for the zeros of each formula.
+    parts: Vec<usize>,
     /// How many of the times that are asked for have their row.
     sampled: usize,
     outcome: IvpOutcome,
@@ -114,15 +121,20 @@ struct Seen<'s, 'a> {
 }
 
 impl Seen<'_, '_> {
-    /// The times within the step, and its end, at which the functions of events are looked at. Steps of power series are many times longer
-    /// than those of other methods: they are divided into half as many parts as their order, so that no more is missed than
+    /// Where within the step, from 0 at its beginning to 1 at its end, functions without a formula are looked at. Steps of power series are many
+    /// times longer than those of other methods: they are divided into half as many parts as their order, so that no more is missed than
     /// with short steps.
-    fn looks(&self) -> Vec<f64> {
-        let (begin, end) = (self.begin.0, self.end.0);
+    fn parts(&self) -> Vec<f64> {
         let order = self.step.series().map_or(0, |series| series.order());
         let parts = (order / 2).max(1);
-        let within = (1..parts).map(|k| begin + (end - begin) * (k as f64 / parts as f64));
-        let mut looks: Vec<f64> = within.collect();
+        (1..parts).map(|k| k as f64 / parts as f64).collect()
+    }
+
+    /// The times at these parts of the step, and its end.
+    fn within(&self, parts: Vec<f64>) -> Vec<f64> {
+        let (begin, end) = (self.begin.0, self.end.0);
+        let times = parts.into_iter().map(|u| begin + (end - begin) * u);
+        let mut looks: Vec<f64> = times.collect();
         // A step of a few roundings has no room.
         looks.dedup();
         looks.retain(|&time| time != begin && time != end);
@@ -148,11 +160,11 @@ impl Seen<'_, '_> {
 impl<'p, 'a, E> Watch<'p, 'a, E> {
     fn new(plan: &'p IvpPlan, mut asked: IvpAsked<'a, E>) -> Result<Self, Halt<E>> {
         let (time, values) = (plan.span.0, plan.start.clone());
-        let events = asked.events.iter_mut();
-        let functions: Result<Vec<(f64, f64)>, _> = events
-            .map(|event| (event.function)(time, &values).map(|g| (time, g)))
-            .collect();
-        let functions = functions?;
+        let mut functions = Vec::with_capacity(asked.events.len());
+        for event in &mut asked.events {
+            let value = (event.function)(time, &values)?;
+            functions.push((time, event.beginning(value)));
+        }
         let mut outcome = IvpOutcome::new(functions.len());
         if asked.dense_output {
             outcome.solution = Some(IvpSolution::new(plan.chart, time));
@@ -167,6 +179,7 @@ impl<'p, 'a, E> Watch<'p, 'a, E> {
             degree: plan.method().dense_degree(),
             time,
             values,
+            parts: vec![USUAL_PARTS[1]; functions.len()],
             functions,
             sampled: 0,
             outcome,
@@ -204,8 +217,10 @@ impl<'p, 'a, E> Watch<'p, 'a, E> {
             return Ok(None);
         }
         let mut roots = Vec::new();
-        for time in seen.looks() {
-            self.look(seen, time, &mut roots)?;
+        for i in 0..self.asked.events.len() {
+            for time in self.looks(seen, i) {
+                self.look(seen, i, time, &mut roots)?;
+            }
         }
         let way = (seen.end.0 - seen.begin.0).signum();
         roots.sort_by(|a, b| (way * a.1).total_cmp(&(way * b.1)));
@@ -223,36 +238,55 @@ impl<'p, 'a, E> Watch<'p, 'a, E> {
         Ok(None)
     }
 
-    /// Finds the events since the last look.
+    /// The times within the step, and its end, at which the function of an event is looked at.
+    fn looks(&mut self, seen: &Seen<'_, '_>, i: usize) -> Vec<f64> {
+        let Some(formula) = &self.asked.events[i].formula else {
+            return seen.within(seen.parts());
+        };
+        let mut step = IvpSolution::new(self.plan.chart, seen.begin.0);
+        step.push(seen.step, seen.end.0, self.degree);
+        let [usual, _] = USUAL_PARTS;
+        let made = formula.parts(&step, MOST_PARTS.min(usual + self.parts[i]));
+        self.parts[i] -= made.count.saturating_sub(usual);
+        let mut inner = made.inner;
+        if made.undecided {
+            self.outcome.undecided[i] = true;
+            inner.extend(seen.parts());
+            inner.sort_by(f64::total_cmp);
+        }
+        seen.within(inner)
+    }
+
+    /// Finds the zeros of an event since the last look.
     fn look(
         &mut self,
         seen: &Seen<'_, '_>,
+        i: usize,
         end: f64,
         roots: &mut Vec<(usize, f64)>,
     ) -> Result<(), Ended<E>> {
         let values = seen.at(end);
-        for (i, event) in self.asked.events.iter_mut().enumerate() {
-            let after = (event.function)(end, &values)?;
-            // What is not a number within a step hides no change of the sign.
-            if after.is_nan() && end != seen.end.0 {
-                continue;
-            }
-            let (begin, before) = std::mem::replace(&mut self.functions[i], (end, after));
-            // A zero at a look within the step is the end of one part, and not the beginning of another one too.
-            let told = before == 0.0 && begin != seen.begin.0;
-            if told || !event.is_between(before, after) {
-                continue;
-            }
-            let function = |time: f64| (event.function)(time, &seen.at(time));
-            let root = zero((begin, before), (end, after), function)?;
-            let root = root.ok_or_else(|| {
-                let where_ = format!("between t = {begin} and {end}");
-                Ended::Failed(Error::Input(format!(
-                    "the function of event {i} is not a number {where_}, where it changes its sign"
-                )))
-            })?;
-            roots.push((i, root));
+        let event = &mut self.asked.events[i];
+        let after = (event.function)(end, &values)?;
+        // What is not a number within a step hides no change of the sign.
+        if after.is_nan() && end != seen.end.0 {
+            return Ok(());
         }
+        let (begin, before) = std::mem::replace(&mut self.functions[i], (end, after));
+        // A zero at a look within the step is the end of one part, and not the beginning of another one too.
+        let told = before == 0.0 && begin != seen.begin.0 && event.side.is_none();
+        if told || !event.is_between(before, after) {
+            return Ok(());
+        }
+        let function = |time: f64| (event.function)(time, &seen.at(time));
+        let root = zero((begin, before), (end, after), function)?;
+        let root = root.ok_or_else(|| {
+            let where_ = format!("between t = {begin} and {end}");
+            Ended::Failed(Error::Input(format!(
+                "the function of event {i} is not a number {where_}, where it changes its sign"
+            )))
+        })?;
+        roots.push((i, root));
         Ok(())
     }
 

@@ -1,5 +1,7 @@
 //! The solution as a function of time: polynomials, one for each step.
 
+mod bounds;
+
 use super::chart::{Chart, Given};
 use crate::error::{Error, Result};
 use crate::integrate::AnyStep;

@@ -58,6 +58,13 @@ impl Interval {
         (self.hi - x).max(x - self.lo).next_up()
     }
 
+    /// What two bounds of the same number have in common; the second where rounding leaves nothing of that.
+    pub fn common(self, other: Self) -> Self {
+        let lo = self.lo.max(other.lo);
+        let hi = self.hi.min(other.hi);
+        if lo <= hi { Interval { lo, hi } } else { other }
+    }
+
     fn widened(lo: f64, hi: f64, ulps: usize) -> Self {
         let (mut lo, mut hi) = (lo, hi);
         for _ in 0..ulps {
