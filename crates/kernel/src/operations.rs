@@ -105,7 +105,7 @@ pub struct Signs {
 
 impl Operation {
     /// Calls `f` with each operand.
-    pub(crate) fn for_each_operand(&self, mut f: impl FnMut(Value)) {
+    pub fn for_each_operand(&self, mut f: impl FnMut(Value)) {
         match *self {
             Operation::Zero | Operation::Load(_) | Operation::Broadcast(_) => {}
             Operation::Store(_, a)
