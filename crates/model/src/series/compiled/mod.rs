@@ -6,6 +6,8 @@
 
 mod both_ways;
 mod columns;
+#[cfg(target_arch = "x86_64")]
+mod columns_both_ways;
 mod data;
 mod ends;
 mod formulas;
@@ -15,8 +17,10 @@ mod shape;
 mod sums;
 
 pub use both_ways::BothWays;
-pub(super) use both_ways::{both_ways, columns_both_ways};
+pub(super) use both_ways::both_ways;
 pub(super) use columns::CompiledColumns;
+#[cfg(target_arch = "x86_64")]
+pub(super) use columns_both_ways::columns_both_ways;
 
 use super::element::Element;
 use super::program_rows::ProgramRows;
