@@ -101,7 +101,7 @@ impl<S: Equations<3, 2>> Equations<4, 2> for Driving<S> {
     }
 }
 
-/// Its orbits, with lengths measured in the three.
+/// Its orbits, with lengths measured in the three, and planes that regard the extents: no coefficient depends on planes.
 struct InThree<S>(OverParameters<Driving<S>, 4, 2>);
 
 impl<S: Equations<3, 2>> ParametrisedField for InThree<S> {
@@ -123,6 +123,10 @@ impl<S: Equations<3, 2>> ParametrisedField for InThree<S> {
 
     fn scale(&self, at: [f64; 2]) -> [f64; 2] {
         self.0.scale(at)
+    }
+
+    fn in_extents(&self) -> bool {
+        true
     }
 
     fn across(&self, _: &Vector, flow: &Vector) -> Matrix {

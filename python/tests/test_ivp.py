@@ -617,14 +617,20 @@ WRONG: list[tuple[dict[str, Any], str, str]] = [
 ]  # fmt: skip
 
 
+def refused(asked: dict[str, Any], field: str, said: str) -> InputError:
+    """The error of a call whose argument is wrong: one line that names it."""
+    with pytest.raises(InputError) as told:
+        solve_ivp(**asked)
+    message = str(told.value)
+    assert told.value.field == field, message
+    assert field in message and said in message and "\n" not in message, message
+    return told.value
+
+
 @pytest.mark.parametrize("case", range(len(WRONG)))
 def test_wrong_input_names_the_argument(case: int) -> None:
     changed, field, said = WRONG[case]
-    with pytest.raises(InputError) as told:
-        solve_ivp(**{**BASE, **changed})
-    message = str(told.value)
-    assert told.value.field == field
-    assert field in message and said in message and "\n" not in message
+    message = str(refused({**BASE, **changed}, field, said))
     assert "`span`" not in message and "start" not in message
 
 

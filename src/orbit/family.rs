@@ -34,8 +34,8 @@ pub trait ParametrisedField: Sync {
         flow
     }
 
-    /// Whether the planes of nodes lie between those across the flow and those across the flow as it is seen in the extents of the orbit. Planes across
-    /// the flow cut an orbit that is thin in one variable at any angle; those in its extents alone make steps shorter where it is not thin.
+    /// Whether the planes of nodes also regard how far each variable moves along the orbit. Planes across the flow cut an orbit that is thin in one
+    /// variable at a shallow angle; where no variable is, those across the flow are the better ones.
     fn in_extents(&self) -> bool {
         false
     }

@@ -14,6 +14,7 @@ use crate::integrate::{AnyField, MAX_STEPS, Taylor, Tolerances};
 use crate::series::Jet3;
 use nalgebra::{Complex, DVector, Vector2, Vector3};
 use std::f64::consts::FRAC_1_SQRT_2;
+use std::sync::Arc as Shared;
 
 type C = Complex<f64>;
 /// Coordinates along two directions.
@@ -77,9 +78,11 @@ impl<'a> PoincareMaps<'a> {
             maps.jets = Some(jets?);
         } else {
             let mut tracer = Tracer::taylor(tolerance).ok()?;
-            maps.linear = Linear::of(&mut tracer, family, &maps.field, &site.shooting)
-                .ok()?
-                .maps;
+            // In the planes of the jets.
+            let frames = Shared::new(maps.frames.clone());
+            let linear =
+                Linear::in_frames(&mut tracer, &maps.field, &site.shooting, &[], frames);
+            maps.linear = linear.ok()?.maps;
         }
         Some(maps)
     }

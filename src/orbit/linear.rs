@@ -110,7 +110,8 @@ impl Linear {
         moved
     }
 
-    fn in_frames(
+    /// In these planes, whose normals are the first columns.
+    pub(super) fn in_frames(
         tracer: &mut Tracer,
         field: &AnyField<'_>,
         shooting: &ShootingNodes,
@@ -420,33 +421,22 @@ fn underdetermined(
     Some((start(&(&q * y)), kernel.collect()))
 }
 
-/// The family's planes at all nodes.
+/// The family's planes at all nodes. Those that regard the extents of the orbit have normals between the flow and the flow as it is seen in the extents.
 fn frames_of(
     family: &dyn ParametrisedField,
     field: &AnyField<'_>,
     shooting: &ShootingNodes,
 ) -> Vec<Matrix> {
-    let extents = family.in_extents().then(|| extents_in_parts(shooting));
-    let normal = |x: &Vector| {
-        let normal = family.normal(x, field.f(x));
-        match &extents {
-            Some(extents) => frame(&normal.component_div(extents)),
-            None => frame(&normal),
-        }
-    };
-    shooting.nodes.iter().map(normal).collect()
-}
-
-/// How far each variable moves, in parts of what the liveliest one does. What hardly moves beside the others, all in the units of the motion, moves by
-/// rounding.
-fn extents_in_parts(shooting: &ShootingNodes) -> Vector {
+    /// In parts of what the liveliest variable moves by: what moves by less beside it moves by rounding.
     const LEAST: f64 = 0.01;
-    let values = |i: usize| shooting.nodes.iter().map(move |x| x[i]);
-    let extents = Vector::from_fn(shooting.dimension(), |i, _| {
-        values(i).fold(f64::NEG_INFINITY, f64::max) - values(i).fold(f64::INFINITY, f64::min)
-    });
+    let extents = match family.in_extents() {
+        true => shooting.extents(),
+        false => Vector::repeat(family.dimension(), 1.0),
+    };
     let most = extents.amax();
-    extents.map(|extent| (extent / most).max(LEAST))
+    let extents = extents.map(|extent| (extent / most).max(LEAST));
+    let normal = |x: &Vector| frame(&family.normal(x, field.f(x)).component_div(&extents));
+    shooting.nodes.iter().map(normal).collect()
 }
 
 /// The columns of a frame that span the plane.

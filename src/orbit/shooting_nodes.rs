@@ -280,31 +280,34 @@ impl ShootingNodes {
         self.durations.iter().sum()
     }
 
-    /// How far each variable moves; of one that does not, its value.
+    /// How far each variable moves, between its smallest and its largest value at the nodes.
+    pub(super) fn extents(&self) -> Vector {
+        let values = |i: usize| self.nodes.iter().map(move |x| x[i]);
+        Vector::from_fn(self.dimension(), |i, _| {
+            values(i).fold(f64::NEG_INFINITY, f64::max) - values(i).fold(f64::INFINITY, f64::min)
+        })
+    }
+
+    /// The same; of a variable that does not move, its value.
     pub(super) fn sizes(&self) -> Vector {
-        let of = |i: usize| {
-            let values = || self.nodes.iter().map(|x| x[i]);
-            let extent =
-                values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);
-            let value = values().fold(0.0, |most: f64, x| most.max(x.abs()));
-            if extent > f64::EPSILON * value {
-                extent
+        let extents = self.extents();
+        Vector::from_fn(self.dimension(), |i, _| {
+            let value = self
+                .nodes
+                .iter()
+                .fold(0.0, |most: f64, x| most.max(x[i].abs()));
+            if extents[i] > f64::EPSILON * value {
+                extents[i]
             } else if value > 0.0 {
                 value
             } else {
                 1.0
             }
-        };
-        Vector::from_fn(self.dimension(), |i, _| of(i))
+        })
     }
 
     /// The largest extent over the components.
     pub fn extent(&self) -> f64 {
-        let over = |pick: fn(f64, f64) -> f64, from: f64, i: usize| {
-            self.nodes.iter().map(|x| x[i]).fold(from, pick)
-        };
-        (0..self.dimension())
-            .map(|i| over(f64::max, f64::NEG_INFINITY, i) - over(f64::min, f64::INFINITY, i))
-            .fold(0.0, f64::max)
+        self.extents().iter().copied().fold(0.0, f64::max)
     }
 }

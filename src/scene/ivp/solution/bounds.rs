@@ -43,8 +43,8 @@ impl IvpSolution {
     }
 }
 
-/// Of s since the beginning of a piece, in its unit: bounds of the value are those by the slope from the middle, which for narrow parts are
-/// nearer, or those of the polynomial itself.
+/// Value and slope of a piece's polynomial, for s since its beginning in its own unit. The mean value form from the middle is sharper for narrow
+/// parts; as both hold, the value is in what they have in common.
 fn polynomial(basis: Basis, coefficients: &[f64], s: Jet<Interval, 1>) -> Jet<Interval, 1> {
     let of = |s: Jet<Interval, 1>| match basis {
         Basis::Chebyshev => {
