@@ -80,8 +80,7 @@ impl<'a> PoincareMaps<'a> {
             let mut tracer = Tracer::taylor(tolerance).ok()?;
             // In the planes of the jets.
             let frames = Shared::new(maps.frames.clone());
-            let linear =
-                Linear::in_frames(&mut tracer, &maps.field, &site.shooting, &[], frames);
+            let linear = Linear::in_frames(&mut tracer, &maps.field, &site.shooting, &[], frames);
             maps.linear = linear.ok()?.maps;
         }
         Some(maps)
