@@ -21,7 +21,7 @@ mod sundials {
 
     const HEADER: &str = "src/sundials/missing.h";
     const REMEDY: &str = "`apt-get install -y libsundials-dev libclang-dev` (or ./setup) installs what is needed, \
-        SUNDIALS_INCLUDE_DIR and SUNDIALS_LIBRARY_DIR name another place, and `--no-default-features --features cli` builds without C";
+        SUNDIALS_INCLUDE_DIR and SUNDIALS_LIBRARY_DIR name another place, and `--no-default-features` builds without C";
 
     /// Tables of flags, as (name in Rust, prefix in C, non-negative flags that are return values).
     const TABLES: [(&str, &str, &[&str]); 5] = [

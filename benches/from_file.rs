@@ -10,7 +10,7 @@ use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::integrate::{Integrator, MAX_STEPS, Taylor, Tolerances};
 use twinslip::model::classics::Lorenz;
 use twinslip::model::{Loading, Smooth, two_interfaces};
-use twinslip::scene::SystemFile;
+use twinslip_tasks::scene::SystemFile;
 
 /// Two interfaces with law (35), as one would write them.
 const SPINODAL: &str = include_str!("../tests/data/two-interfaces.toml");

@@ -11,8 +11,8 @@ use clap::Parser;
 use twinslip::Result;
 use twinslip::friction::{AnyLaw, Formulas, Parameters};
 use twinslip::integrate::Control;
-use twinslip::scene::{SectionOptions, SectionPlan, Sink, run_section};
 use twinslip::section::half_driving_stress;
+use twinslip_tasks::scene::{SectionOptions, SectionPlan, Sink, run_section};
 
 /// Returns let pass and recorded at every point, and the tolerance of the runs.
 const NUMERICS: &str = "--lyapunov --skip 1000 --returns 1200 --rtol 1e-9";

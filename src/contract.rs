@@ -47,7 +47,7 @@ impl Tolerances {
     }
 
     /// With this largest step.
-    pub(crate) fn stepping(self, max_step: f64) -> Self {
+    pub fn stepping(self, max_step: f64) -> Self {
         Tolerances { max_step, ..self }
     }
 
@@ -59,7 +59,6 @@ impl Tolerances {
 
 /// What an integration cost. A result, never a log line.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct Work {
     /// Accepted steps.
     pub steps: usize,

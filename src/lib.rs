@@ -39,8 +39,6 @@
 // Bottom up: a room imports only from those above it here. The drawing in the README says from which.
 pub use twinslip_error as error;
 pub use twinslip_model::{expression, field, friction, model, number, series};
-#[cfg(feature = "plot")]
-pub use twinslip_output as output;
 
 pub mod contract;
 
@@ -65,18 +63,6 @@ pub mod many;
 
 pub mod fit;
 
-#[cfg(feature = "cli")]
-pub mod scene;
-
-#[cfg(feature = "cli")]
-pub mod views;
-
-#[cfg(feature = "cli")]
-pub mod paper;
-
-#[cfg(feature = "cli")]
-pub mod cli;
-
 /// What the tests of this repository reach for. Nothing here is kept as it is.
 #[doc(hidden)]
 pub mod internals {
@@ -95,28 +81,7 @@ pub mod internals {
     pub use crate::section::curve::weighted_mean;
     #[cfg(feature = "sundials")]
     pub use crate::sundials::{compatible, counted};
-    #[cfg(feature = "cli")]
-    pub use command::*;
-
-    #[cfg(feature = "cli")]
-    mod command {
-        pub use crate::cli::ensemble::bands::{
-            Band, Banded, Check, DEVIATIONS, Ends, Sample, Sides, bands,
-        };
-        pub use crate::cli::ensemble::draws::normal;
-        pub use crate::cli::ensemble::item::{Item, Measured, matched};
-        pub use crate::cli::program;
-        #[cfg(feature = "mpi")]
-        pub use crate::cli::sweep::wire::{pack, unpack};
-        pub use crate::cli::words::{count, flagged, several, time};
-        pub use crate::paper::clock::timed;
-        pub use crate::views::sweep::tints::{LIGHTEST, RegimeKind};
-    }
 }
-
-#[cfg(feature = "cli")]
-#[doc = include_str!("../docs/guide.md")]
-pub mod guide {}
 
 pub use error::{Error, Result};
 

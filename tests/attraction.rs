@@ -8,7 +8,7 @@ use std::fs;
 use twinslip::equilibrium::LyapunovBall;
 use twinslip::field::Vector;
 use twinslip::integrate::AnyField;
-use twinslip::scene::SystemFile;
+use twinslip_tasks::scene::SystemFile;
 
 const DOUBLE_WELL: &str = "name = \"double well\"
 states = [\"x\", \"y\"]

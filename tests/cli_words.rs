@@ -1,9 +1,10 @@
 //! What the program says of results and of itself: tables, messages, version, completions, manual, help.
 
 use crate::command;
+use crate::common::ROOT;
 use command::{folder, refused, run, twinslip};
 use std::process::Command;
-use twinslip::output::{Cell, RowWriter, TableRows};
+use twinslip_output::{Cell, RowWriter, TableRows};
 
 const COMMANDS: [&str; 14] = [
     "law",
@@ -182,11 +183,8 @@ fn help_shows_an_example_that_runs() {
             let place = folder(&format!("help-{command}"));
             let status = Command::new(env!("CARGO_BIN_EXE_twinslip"))
                 .args(
-                    line.replace(
-                        "scenes/",
-                        &format!("{}/scenes/", env!("CARGO_MANIFEST_DIR")),
-                    )
-                    .split(' '),
+                    line.replace("scenes/", &format!("{}/scenes/", ROOT))
+                        .split(' '),
                 )
                 .current_dir(place)
                 .output()

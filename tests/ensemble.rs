@@ -1,6 +1,7 @@
 //! The uncertainty of a fit in what follows from it, against closed forms with the covariance propagated by hand.
 
 use crate::command::{csv, folder, number, object, twinslip};
+use crate::common::ROOT;
 use crate::common::relative;
 use serde_json::{Value, json};
 use std::fs;
@@ -12,9 +13,7 @@ const DEVIATIONS: f64 = 1.959_963_984_540_054;
 const ACCURACY: f64 = 1e-6;
 
 fn data(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("tests/data")
-        .join(name)
+    Path::new(ROOT).join("tests/data").join(name)
 }
 
 /// A fit of the law of Dieterich and Ruina; its parameters are ln a, ln b, ln L and a_v.

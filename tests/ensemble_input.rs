@@ -1,13 +1,14 @@
 //! What a fit may be, and what may be given beside it.
 
 use crate::command::{folder, number, object, refused_in_one_line, twinslip};
+use crate::common::ROOT;
 use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
-use twinslip::scene::EnsembleFile;
+use twinslip_tasks::scene::EnsembleFile;
 
 fn data() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/fit.json")
+    Path::new(ROOT).join("tests/data/fit.json")
 }
 
 fn fit() -> String {

@@ -3,7 +3,7 @@
 use twinslip::field::State;
 use twinslip::integrate::{Control, Integrator, Taylor};
 use twinslip::model::{Driven, symmetric, two_interfaces};
-use twinslip::scene::{IntegrateOptions, Plan, Sink, run};
+use twinslip_tasks::scene::{IntegrateOptions, Plan, Sink, run};
 
 #[derive(clap::Parser)]
 struct Line {

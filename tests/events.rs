@@ -7,8 +7,8 @@ use twinslip::integrate::{Control, Integrator, MAX_STEPS, Taylor, Tolerances};
 use twinslip::model::{Loading, two_interfaces};
 use twinslip::number::DoubleDouble;
 use twinslip::number::polynomial::Crossing;
-use twinslip::scene::{IntegrateOptions, Plan, RunOutcome, Sink, SlipEvent, run};
 use twinslip::series::{Expansion, Passage, Section, Zeros};
+use twinslip_tasks::scene::{IntegrateOptions, Plan, RunOutcome, Sink, SlipEvent, run};
 
 #[derive(clap::Parser)]
 struct Line {

@@ -7,8 +7,8 @@ use twinslip::equilibrium::{Pitchfork, Solver, Symmetry, Verdict, stability, ste
 use twinslip::field::State;
 use twinslip::friction::{AnyLaw, ExtremumKind, Parameters};
 use twinslip::model::{Loading, two_interfaces};
-use twinslip::output::Cell;
-use twinslip::paper::{Made, Make, Pieces, Product};
+use twinslip_output::Cell;
+use twinslip_paper::{Made, Make, Pieces, Product};
 
 fn made(id: &str) -> Made {
     let stop = AtomicBool::new(false);

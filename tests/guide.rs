@@ -1,6 +1,7 @@
 //! Every command of the guide and of the README runs as it stands, and what documents point to is there.
 
 use crate::command;
+use crate::common::ROOT;
 use command::{folder, twinslip};
 use std::path::Path;
 use std::process::Command;
@@ -61,7 +62,7 @@ fn run_all(lines: &[&str], place: &Path) {
 }
 
 fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
+    Path::new(ROOT)
 }
 
 fn text_of(name: &str) -> String {

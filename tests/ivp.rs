@@ -8,7 +8,7 @@ use std::convert::Infallible;
 use twinslip::Error;
 use twinslip::friction::AnyLaw;
 use twinslip::integrate::Control;
-use twinslip::scene::{IvpAsked, IvpOutcome, IvpPlan};
+use twinslip_tasks::scene::{IvpAsked, IvpOutcome, IvpPlan};
 
 /// How far errors of these methods at rtol 1e-12 are above it on the problems here: multistep methods add up more.
 fn factor(method: &str) -> f64 {

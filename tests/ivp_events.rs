@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use std::convert::Infallible;
 use std::f64::consts::PI;
 use twinslip::Error;
-use twinslip::scene::{Halt, IvpAsked, IvpError, IvpEvent, IvpOutcome, IvpPlan};
+use twinslip_tasks::scene::{Halt, IvpAsked, IvpError, IvpEvent, IvpOutcome, IvpPlan};
 
 type Event<'a> = IvpEvent<'a, Infallible>;
 

@@ -5,7 +5,7 @@ use crate::common::text::{file, near};
 use std::convert::Infallible;
 use std::f64::consts::PI;
 use twinslip::Error;
-use twinslip::scene::{IvpAsked, IvpEvent, IvpFormula, IvpOutcome, IvpPlan};
+use twinslip_tasks::scene::{IvpAsked, IvpEvent, IvpFormula, IvpOutcome, IvpPlan};
 
 type Event = IvpEvent<'static, Infallible>;
 

@@ -2,7 +2,7 @@
 
 use crate::common::ivp::{between, methods, oscillator, plan, sampled, solved};
 use proptest::prelude::*;
-use twinslip::scene::{IvpAsked, IvpParts, IvpSolution};
+use twinslip_tasks::scene::{IvpAsked, IvpParts, IvpSolution};
 
 fn is_send<T: Send + Sync + Clone>(_: &T) {}
 

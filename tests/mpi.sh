@@ -14,7 +14,7 @@ done
 if [ $# -gt 0 ]; then
     program=$1
 else
-    cargo build --quiet --release --features mpi
+    cargo build --quiet --release -p twinslip-cli --features mpi
     program=${CARGO_TARGET_DIR:-target}/release/twinslip
 fi
 folder=$(mktemp -d)

@@ -1,6 +1,7 @@
 //! Who uses the library alone compiles none of the packages that only the command needs; and all features share one build of the
 //! models.
 
+use crate::common::ROOT;
 use std::collections::BTreeSet;
 use std::process::Command;
 
@@ -29,9 +30,12 @@ const OF_THE_COMMAND: &[&str] = &[
     "winnow",
 ];
 
-/// All packages that go into the library with these features.
-fn packages(features: &[&str]) -> BTreeSet<String> {
-    let lines = tree("{p}", &[&["--edges", "normal"], features].concat());
+/// All packages that go into this one with these features.
+fn packages(of: &str, features: &[&str]) -> BTreeSet<String> {
+    let lines = tree(
+        "{p}",
+        &[&["--edges", "normal", "--package", of], features].concat(),
+    );
     lines.iter().map(|line| name(line)).collect()
 }
 
@@ -42,7 +46,7 @@ fn name(line: &str) -> String {
 /// The packages in this format, each once.
 fn tree(format: &str, options: &[&str]) -> BTreeSet<String> {
     let tree = Command::new(env!("CARGO"))
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .current_dir(ROOT)
         .args(["tree", "--offline", "--locked"])
         .args(["--prefix", "none", "--no-dedupe", "--format", format])
         .args(options)
@@ -68,7 +72,7 @@ fn the_library_alone_is_without_the_packages_of_the_command() {
         &["--no-default-features"] as &[_],
         &["--no-default-features", "--features", "sundials"],
     ] {
-        let found = packages(features);
+        let found = packages("twinslip", features);
         assert!(found.contains("twinslip-model"), "{found:?}");
         let none: [&str; 0] = [];
         assert_eq!(of_the_command(&found), none, "with {features:?}");
@@ -78,7 +82,10 @@ fn the_library_alone_is_without_the_packages_of_the_command() {
 /// Two versions of one of these would both be compiled, for seconds each, in every build from nothing.
 #[test]
 fn the_program_is_built_with_one_bindgen_and_one_syn() {
-    let lines = tree("{p}", &["--edges", "normal,build"]);
+    let lines = tree(
+        "{p}",
+        &["--edges", "normal,build", "--package", "twinslip-cli"],
+    );
     for package in ["bindgen", "syn"] {
         let versions = lines.iter().filter(|line| name(line) == package);
         assert_eq!(versions.count(), 1, "of {package}");
@@ -88,7 +95,10 @@ fn the_program_is_built_with_one_bindgen_and_one_syn() {
 /// A name that no package has would be looked for in vain.
 #[test]
 fn the_command_has_these_packages() {
-    assert_eq!(of_the_command(&packages(&[])), OF_THE_COMMAND);
+    assert_eq!(
+        of_the_command(&packages("twinslip-cli", &[])),
+        OF_THE_COMMAND
+    );
 }
 
 /// Where a feature of the project turns a feature on in a package that the models need, their kernels, which take the compiler longest,
@@ -104,7 +114,8 @@ fn all_features_share_one_build_of_the_models() {
     let below = tree("{p}", &[EDGES, &["--package", "twinslip-model"]].concat());
     let below: BTreeSet<_> = below.iter().map(|line| version(line)).collect();
     let with = |features: &[&str]| {
-        let mut all = tree("{p} [{f}]", &[EDGES, features].concat());
+        let command = &["--package", "twinslip-cli"];
+        let mut all = tree("{p} [{f}]", &[EDGES, command, features].concat());
         all.retain(|line| below.contains(&version(line)));
         all
     };
@@ -113,7 +124,7 @@ fn all_features_share_one_build_of_the_models() {
         all.iter().any(|line| line.starts_with("nalgebra ")),
         "{all:?}"
     );
-    for features in [&[] as &[_], &["--no-default-features", "--features", "cli"]] {
+    for features in [&[] as &[_], &["--no-default-features"]] {
         let missing: Vec<_> = with(features).difference(&all).cloned().collect();
         assert_eq!(missing, [""; 0], "with {features:?}");
     }
@@ -125,7 +136,7 @@ fn all_features_share_one_build_of_the_models() {
 fn the_python_package_shares_the_build_of_the_command() {
     const EDGES: &[&str] = &["--edges", "normal,build"];
     let of = |package: &str| tree("{p} [{f}]", &[EDGES, &["--package", package]].concat());
-    let (command, python) = (of("twinslip"), of("twinslip-python"));
+    let (command, python) = (of("twinslip-cli"), of("twinslip-python"));
     let missing: Vec<_> = command.difference(&python).cloned().collect();
     assert_eq!(missing, [""; 0]);
     assert!(

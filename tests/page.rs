@@ -3,7 +3,7 @@
 use crate::common::pages;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use twinslip::output::page::{Figure, Page, Score};
+use twinslip_output::page::{Figure, Page, Score};
 
 /// The values of all attributes of that name.
 fn attributes<'a>(html: &'a str, name: &str) -> Vec<&'a str> {

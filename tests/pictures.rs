@@ -5,7 +5,7 @@ use drawn::{BLUE, GRID, INK, PAPER, Shape, alone, numbers, seen, unit};
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::Rect;
 use resvg::usvg::{Options, Tree};
-use twinslip::output::plot::{
+use twinslip_output::plot::{
     Axis, Block, Cells, Drawing, Key, Mark, Note, Panel, PlotSeries, Shade, Side, Stroke, Swatch,
     Symbol,
 };

@@ -44,7 +44,7 @@ fn whole(out: &Path) -> usize {
             let name = file["name"].as_str().expect("a name");
             let bytes = fs::read(out.join(name)).expect("a file");
             assert_eq!(file["bytes"], bytes.len(), "{name}");
-            let hash = twinslip::paper::hash(&bytes);
+            let hash = twinslip_paper::hash(&bytes);
             assert_eq!(file["sha256"], hash, "{name}");
         }
     }
@@ -223,7 +223,7 @@ fn figures_may_be_called_as_people_do() {
 fn pieces_tell_what_they_do_and_how_far_they_are() {
     use std::sync::Mutex;
     use std::sync::atomic::AtomicBool;
-    use twinslip::paper::{Product, Reached, RunEvent, Selection, reproduce};
+    use twinslip_paper::{Product, Reached, RunEvent, Selection, reproduce};
     let order = Selection {
         out: folder("reproduce-told"),
         products: Product::listed("fig03,fig05").expect("products"),
@@ -248,7 +248,6 @@ fn pieces_tell_what_they_do_and_how_far_they_are() {
             }
             RunEvent::Making(product) => format!("making {}", product.id),
             RunEvent::Made(product, _) => format!("made {}", product.id),
-            other => format!("{other:?}"),
         };
         told.lock().expect("no panic").push(words);
     };

@@ -1,5 +1,6 @@
 //! The drawing of the rooms in the README is true: imports point one way only.
 
+use crate::common::ROOT;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -186,9 +187,14 @@ fn code(text: &str) -> impl Iterator<Item = &str> {
     lines.filter(|l| !l.trim_start().starts_with("//"))
 }
 
-/// Names of rooms after `crate::`, in code and not in comments, single or in braces.
+/// Names of rooms after `crate::` or the name of a crate, in code and not in comments, single or in braces.
 fn imports(text: &str) -> Vec<String> {
     let code = code(text).collect::<Vec<_>>().join("\n");
+    let code = code
+        .replace("twinslip_tasks::", "crate::")
+        .replace("twinslip::", "crate::")
+        .replace("twinslip_output::", "crate::output::")
+        .replace("twinslip_paper::", "crate::paper::");
     let mut names = Vec::new();
     for rest in code.split("crate::").skip(1) {
         let word = |s: &str| {
@@ -212,9 +218,12 @@ fn imports(text: &str) -> Vec<String> {
 }
 
 /// Where the rooms are: those of a folder, or a crate that is one room.
-const FOLDERS: [(&str, Option<&str>); 5] = [
+const FOLDERS: [(&str, Option<&str>); 8] = [
     ("src", None),
     ("crates/model/src", None),
+    ("crates/tasks/src", None),
+    ("crates/paper/src", Some("paper")),
+    ("crates/cli/src", Some("cli")),
     ("crates/output/src", Some("output")),
     ("crates/error/src", Some("error")),
     ("crates/kernel/src", Some("kernel")),
@@ -224,7 +233,7 @@ const FOLDERS: [(&str, Option<&str>); 5] = [
 fn files() -> Vec<(String, PathBuf)> {
     let mut all = Vec::new();
     for (folder, whole) in FOLDERS {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+        let root = Path::new(ROOT).join(folder);
         let mut found = Vec::new();
         sources(&root, &mut found);
         all.extend(found.into_iter().map(|file| {
@@ -274,7 +283,7 @@ fn imports_point_one_way() {
 
 #[test]
 fn the_readme_draws_these_rooms() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = Path::new(ROOT);
     let readme = fs::read_to_string(root.join("README.md")).expect("readable");
     for (room, rooms) in MAY_IMPORT {
         let row = readme
@@ -342,9 +351,9 @@ fn literals(text: &str) -> Vec<&str> {
 fn only_the_command_line_speaks_of_flags() {
     // A scene and a sweep make command lines of their own of what they are given, and to an ensemble one says more than it holds.
     let lines = [
-        "src/scene/file.rs",
-        "src/scene/sweep/words.rs",
-        "src/scene/ensemble/implied.rs",
+        "crates/tasks/src/scene/file.rs",
+        "crates/tasks/src/scene/sweep/words.rs",
+        "crates/tasks/src/scene/ensemble/implied.rs",
     ];
     let is_flag = |text: &str| {
         let mut after = text.split("--").skip(1);

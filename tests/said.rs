@@ -1,6 +1,7 @@
 //! What is said where something is undecided, left out, or blows up.
 
 use crate::command;
+use crate::common::ROOT;
 use command::{folder, refused, twinslip};
 use serde_json::Value;
 
@@ -139,7 +140,7 @@ fn a_curve_that_is_nowhere_is_told_of() {
 /// The estimate strengthens with velocity: no draw is followed for a band that nothing has.
 #[test]
 fn an_ensemble_of_a_law_without_a_curve_says_so() {
-    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = std::path::Path::new(ROOT);
     let fit = std::fs::read_to_string(root.join("tests/data/fit.json")).expect("a fit");
     let strengthening = fit.replace("0.0152", "0.0082");
     assert_ne!(fit, strengthening);
@@ -160,7 +161,7 @@ fn an_ensemble_of_a_law_without_a_curve_says_so() {
 /// Points that are undecided in all draws have no regime in common.
 #[test]
 fn undecided_is_no_regime_that_draws_share() {
-    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = std::path::Path::new(ROOT);
     let fit = root.join("tests/data/fit.json");
     let line = format!(
         "sweep --interfaces 1 --driving 1e-6 --stiffness 1e9:3e9:3 --ensemble {}:2 --max-steps 1 --format csv",

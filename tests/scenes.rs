@@ -1,12 +1,13 @@
 //! Scene files: those that the repository ships, and what is wrong in others.
 
 use crate::command;
+use crate::common::ROOT;
 use command::{folder, run, twinslip};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 fn shipped() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let folder = Path::new(ROOT).join("scenes");
     let mut paths: Vec<PathBuf> = std::fs::read_dir(folder)
         .expect("scenes/")
         .map(|entry| entry.expect("an entry").path())

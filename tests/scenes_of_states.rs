@@ -5,8 +5,8 @@ use command::{Ended, folder, run, twinslip};
 use serde_json::Value;
 use std::sync::atomic::AtomicBool;
 use twinslip::Error;
-use twinslip::paper::Pieces;
-use twinslip::scene::{Command, EquilibriaPlan, OrbitPlan, SceneFile};
+use twinslip_paper::Pieces;
+use twinslip_tasks::scene::{Command, EquilibriaPlan, OrbitPlan, SceneFile};
 
 /// A scene, and the command line that is the same.
 const SAME: [(&str, &str); 5] = [

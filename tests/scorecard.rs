@@ -7,9 +7,9 @@ use std::collections::BTreeSet;
 use std::sync::OnceLock;
 use std::sync::atomic::AtomicBool;
 use twinslip::number::Uncertain;
-use twinslip::output::Cell;
-use twinslip::paper::Pieces;
-use twinslip::paper::scorecard::{
+use twinslip_output::Cell;
+use twinslip_paper::Pieces;
+use twinslip_paper::scorecard::{
     Agreement, Answer, Entry, compare, difference, entries, json, table1,
 };
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use twinslip::field::State;
 use twinslip::friction::AnyLaw;
 use twinslip::model::{Driven, Loading, two_interfaces};
-use twinslip::scene::{Dimension, IntegrateOptions, Plan, SceneFile};
+use twinslip_tasks::scene::{Dimension, IntegrateOptions, Plan, SceneFile};
 
 /// The scenes of every comparison, from easy to odd: stick-slip at three driving velocities, soft systems, the torus, a
 /// strongly damped and a stiff relaxation, and the other law.

@@ -10,7 +10,7 @@ use common::results::{Row, read};
 use common::scene::{Problem, SCENES};
 use std::error::Error;
 use std::path::Path;
-use twinslip::output::write_whole;
+use twinslip_output::write_whole;
 
 /// Files of rows, and what they hold.
 const FILES: [(&str, &str); 3] = [
@@ -26,7 +26,7 @@ const FILES: [(&str, &str); 3] = [
 ];
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
     let folder = root.join("benches/results");
     let peers = read(&folder.join("peers.csv"))?;
     let mut text = summary::HEAD.to_owned();

@@ -1,7 +1,7 @@
 //! Work-precision diagrams: panels of points joined by lines, both axes logarithmic.
 
 use crate::common::results::{Row, distinct};
-use twinslip::output::plot::{Axis, Block, Drawing, Key, Mark, Panel, PlotSeries, Symbol};
+use twinslip_output::plot::{Axis, Block, Drawing, Key, Mark, Panel, PlotSeries, Symbol};
 
 const COLUMNS: usize = 3;
 /// Of the errors that are shown; smaller ones stand at the end.

@@ -6,9 +6,9 @@ use pyo3::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use twinslip::Error;
-use twinslip::cli::parsed;
 use twinslip::integrate::Control;
-use twinslip::scene::{
+use twinslip_cli::parsed;
+use twinslip_tasks::scene::{
     Command, Halt, IntegrateOptions, IvpAsked, IvpError, IvpEvent, IvpFormula, IvpOutcome,
     IvpParts, IvpPlan, IvpSolution,
 };

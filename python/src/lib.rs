@@ -12,7 +12,7 @@ use ivp::{IvpRun, Solution, solve_ivp};
 use pyo3::prelude::*;
 use run::{Picture, Run};
 use timing::timed;
-use twinslip::cli::{OptionInfo, commands, options, scene_words};
+use twinslip_cli::{OptionInfo, commands, options, scene_words};
 
 /// An option: name, whether it is positional, kind, form, whether it may be given again, default, heading, help.
 type Told = (
@@ -56,7 +56,7 @@ mod _core {
     /// The version of SUNDIALS, or None in a build without it.
     #[pyfunction]
     fn sundials() -> Option<String> {
-        twinslip::cli::sundials()
+        twinslip_cli::sundials()
     }
 
     /// The words of a scene, without what says where results go.
@@ -70,7 +70,7 @@ mod _core {
     /// The scenes that are built in.
     #[pyfunction]
     fn scenes() -> Vec<&'static str> {
-        twinslip::scene::shipped_names()
+        twinslip_tasks::scene::shipped_names()
     }
 
     /// The commands, each with what it does.

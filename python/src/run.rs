@@ -14,9 +14,9 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 use twinslip::Error;
-use twinslip::cli::{Ending, Outlet, run_into};
-use twinslip::output::Cell;
-use twinslip::output::plot::Drawing;
+use twinslip_cli::{Ending, Outlet, run_into};
+use twinslip_output::Cell;
+use twinslip_output::plot::Drawing;
 
 /// Nobody waits longer at once.
 const LONGEST: Duration = Duration::from_secs(3600);

@@ -1,6 +1,6 @@
 //! Rows as columns: numbers, counts or words, with a mask where some are missing.
 
-use twinslip::output::Cell;
+use twinslip_output::Cell;
 
 /// What a column holds.
 #[derive(Debug, Clone, PartialEq)]

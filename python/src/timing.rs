@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use std::sync::Arc;
 use std::thread;
 use std::time::Instant;
-use twinslip::cli::run_into;
+use twinslip_cli::run_into;
 
 /// The seconds of the fastest of so many runs of a command, which keeps its rows as `Run` does, but starts no thread for each and hands
 /// nothing to Python.

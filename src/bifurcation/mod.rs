@@ -19,7 +19,6 @@ pub use crate::model::Parameter;
 
 /// What a point is, in AUTO's letters where AUTO has them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[non_exhaustive]
 pub enum Label {
     /// Pitchfork or branch point of equilibria.
     Bp,
@@ -169,7 +168,6 @@ impl Label {
 
 /// To which side the bifurcating solutions lie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Criticality {
     /// They are stable where what they come from is unstable.
     Supercritical,
@@ -192,7 +190,6 @@ impl Criticality {
 
 /// A special point.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct Special {
     /// What it is.
     pub label: Label,
@@ -254,7 +251,6 @@ fn less_accurate(note: Option<String>) -> String {
 
 /// A point of a branch.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct BranchRow {
     /// The number of the branch, from 0: one run may follow several.
     pub branch: usize,
@@ -284,7 +280,6 @@ pub struct BranchRow {
 
 /// A point of a curve in the (V_H, K) plane.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct LocusRow {
     /// The number of the curve, from 0: a locus may consist of several.
     pub curve: usize,
@@ -325,7 +320,6 @@ impl LocusRow {
 
 /// What is found on the way.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub enum Event {
     /// A point of a branch.
     Branch(BranchRow),

@@ -5,7 +5,6 @@ use std::fmt;
 
 /// Why a curve was followed no further.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub enum Stop {
     /// lambda reached an end of its range.
     RangeEnd,

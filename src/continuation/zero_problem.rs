@@ -59,7 +59,6 @@ pub struct Start {
 
 /// Why a point is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum PointKind {
     /// The first one, and the last one too where the curve is closed.
     Begin,

@@ -5,6 +5,7 @@
 //!
 //! Neumaier, A. (1990). Interval Methods for Systems of Equations, chapter 5. Cambridge University Press.
 
+use crate::model::TextSystem;
 use crate::number::Interval;
 use nalgebra::DMatrix;
 
@@ -17,6 +18,16 @@ pub trait Enclosed {
     fn values(&self, x: &[Interval]) -> Vec<Interval>;
     /// The derivatives, row by row.
     fn jacobian(&self, x: &[Interval]) -> Vec<Interval>;
+}
+
+impl Enclosed for TextSystem {
+    fn values(&self, x: &[Interval]) -> Vec<Interval> {
+        self.rates(x)
+    }
+
+    fn jacobian(&self, x: &[Interval]) -> Vec<Interval> {
+        TextSystem::jacobian(self, x)
+    }
 }
 
 /// A zero.

@@ -14,7 +14,6 @@ use nalgebra::Complex;
 
 /// What is known of the stability.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Verdict {
     /// All eigenvalues have negative real parts, certainly.
     Stable,

@@ -313,7 +313,6 @@ fn state(law: &(impl Law + Rounded), v: DoubleDouble, within: Interval) -> (f64,
 
 /// All steady states at one driving velocity.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct SteadyStates {
     /// By stress, descending.
     pub equilibria: Vec<Equilibrium>,

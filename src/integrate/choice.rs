@@ -67,7 +67,7 @@ impl Choice {
     }
 
     /// The same where another option names it: what it is called in messages.
-    pub(crate) fn named_by(option: &'static str, name: &str) -> Result<Self> {
+    pub fn named_by(option: &'static str, name: &str) -> Result<Self> {
         match name {
             "auto" => Ok(Choice::Auto),
             "taylor" => Ok(Choice::Taylor),

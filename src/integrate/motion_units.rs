@@ -256,6 +256,15 @@ impl MotionUnits {
     pub fn outward(&self, state: &Vector) -> Vector {
         Vector::from_fn(state.len(), |i, _| state[i] * self.sizes[i])
     }
+
+    /// Tolerances in these units: an absolute one in the system's own holds for the state with the largest unit.
+    pub fn inward_tolerances(&self, tolerances: Tolerances, atol_is_given: bool) -> Tolerances {
+        let mut inward = tolerances.stepping(tolerances.max_step / self.time);
+        if atol_is_given {
+            inward.atol /= self.sizes.iter().copied().fold(0.0, f64::max);
+        }
+        inward
+    }
 }
 
 /// What is seen of a run.

@@ -17,8 +17,6 @@ mod kinsol;
 mod local;
 mod method;
 mod newton;
-#[cfg(feature = "mpi")]
-mod ranks;
 mod rosenbrock;
 mod share;
 mod slip_events;
@@ -37,7 +35,7 @@ pub use field::{Slips, arrow_solution};
 pub use interfaces::ManyInterfaces;
 pub use method::ManyMethod;
 pub use rosenbrock::ManyRosenbrock;
-pub use share::{Processes, Share};
+pub use share::{Gather, Processes, Share};
 pub use slip_events::{ManyEvent, Participation, SlipEvents, UnderWay};
 pub use stability::{ManyStability, stability_of_many};
 pub use state::ManyState;

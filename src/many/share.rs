@@ -6,6 +6,7 @@
 use super::block::{Extent, larger};
 use super::constants::LANES;
 use rayon::prelude::*;
+use std::fmt;
 use std::ops::Range;
 
 /// Blocks whose numbers are added up together.
@@ -17,18 +18,41 @@ const GROUPS: usize = 4096;
 /// Interfaces from which on several cores pay.
 pub(super) const MANY: usize = 8192;
 
+/// What the processes of a run tell each other, all of them in the same order: the ranks of MPI.
+pub trait Gather: fmt::Debug + Send + Sync {
+    /// The number of this process, and how many there are.
+    fn place(&self) -> (usize, usize);
+
+    /// The numbers of all processes in their order; a process has so many.
+    fn gathered(&self, own: &[f64], count: &dyn Fn(usize) -> usize) -> Vec<f64>;
+
+    /// The same at the first process; nothing at the others.
+    fn gathered_at_first(&self, own: &[f64], count: &dyn Fn(usize) -> usize) -> Vec<f64>;
+}
+
 /// The processes of a run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy)]
 pub enum Processes {
     /// There is one alone.
     One,
-    /// The ranks of MPI, which has been started.
-    #[cfg(feature = "mpi")]
-    Ranks,
+    /// There are several.
+    Several(&'static dyn Gather),
+}
+
+impl PartialEq for Processes {
+    fn eq(&self, other: &Self) -> bool {
+        self.is_one() == other.is_one()
+    }
+}
+
+impl Processes {
+    fn is_one(self) -> bool {
+        matches!(self, Processes::One)
+    }
 }
 
 /// The interfaces that a process holds of all.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Share {
     count: usize,
     rank: usize,
@@ -46,8 +70,7 @@ impl Share {
     pub fn new(count: usize, processes: Processes) -> Self {
         let (rank, ranks) = match processes {
             Processes::One => (0, 1),
-            #[cfg(feature = "mpi")]
-            Processes::Ranks => super::ranks::place(),
+            Processes::Several(processes) => processes.place(),
         };
         Share {
             count,
@@ -113,7 +136,7 @@ impl Share {
     /// The sum over the chunks of all processes.
     pub(super) fn sum(&self, of_chunks: &[f64]) -> f64 {
         let chunks = self.chunks_in_group();
-        if chunks == 1 && self.processes == Processes::One {
+        if chunks == 1 && self.processes.is_one() {
             return of_chunks.iter().sum();
         }
         let groups: Vec<f64> = of_chunks
@@ -132,8 +155,7 @@ impl Share {
                 debug_assert_eq!(own.len(), count(0));
                 own.to_vec()
             }
-            #[cfg(feature = "mpi")]
-            Processes::Ranks => super::ranks::gathered(own, count),
+            Processes::Several(processes) => processes.gathered(own, &count),
         }
     }
 
@@ -141,16 +163,15 @@ impl Share {
     pub fn at_first(&self, held: Vec<f64>) -> Vec<f64> {
         match self.processes {
             Processes::One => held,
-            #[cfg(feature = "mpi")]
-            Processes::Ranks => {
-                super::ranks::gathered_at_first(&held, |rank| self.held_by(rank).len())
+            Processes::Several(processes) => {
+                processes.gathered_at_first(&held, &|rank| self.held_by(rank).len())
             }
         }
     }
 
     /// What one process knows, and all others have zeros for.
     pub fn told(&self, own: &mut [f64]) {
-        if self.processes == Processes::One {
+        if self.processes.is_one() {
             return;
         }
         let all = self.gathered(own, |_| own.len());
@@ -165,7 +186,7 @@ impl Share {
     /// What the chunks of all processes do together.
     pub(super) fn extent(&self, of_chunks: &[Extent]) -> Extent {
         let own = of_chunks.iter().copied().fold(Extent::NONE, Extent::and);
-        if self.chunks_in_group() == 1 && self.processes == Processes::One {
+        if self.chunks_in_group() == 1 && self.processes.is_one() {
             return own;
         }
         let slip_rates: Vec<f64> = of_chunks.iter().map(|extent| extent.slip_rate).collect();
@@ -188,7 +209,7 @@ impl Share {
 
     /// The largest of all processes, or what is not a number.
     pub fn largest<const N: usize>(&self, own: [f64; N]) -> [f64; N] {
-        if self.processes == Processes::One {
+        if self.processes.is_one() {
             return own;
         }
         let all = self.gathered(&own, |_| N);

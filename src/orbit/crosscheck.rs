@@ -9,7 +9,6 @@ use crate::integrate::AnyField;
 
 /// What the second method found.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct Crosscheck {
     /// The second method's orbit.
     pub orbit: Orbit,

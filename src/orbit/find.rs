@@ -49,7 +49,6 @@ pub enum InitialGuess {
 
 /// What was found.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct FoundOrbit {
     /// The orbit asked for; where several have the symmetry, a stable one.
     pub orbit: Orbit,

@@ -22,7 +22,6 @@ use nalgebra::{Complex, Matrix2, Vector2};
 
 /// What a multiplier is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Kind {
     /// A real number.
     Real,

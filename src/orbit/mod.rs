@@ -19,6 +19,7 @@ mod hopf;
 mod interface_system;
 mod jet;
 mod linear;
+mod motion_units;
 pub(crate) mod multipliers;
 mod new_nodes;
 mod noise;

@@ -12,7 +12,6 @@ use crate::series::{Section, Zeros};
 
 /// Along one cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
 pub struct Profile {
     /// The mean of tau over time.
     pub mean_stress: f64,

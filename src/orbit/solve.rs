@@ -129,7 +129,7 @@ impl OrbitAccuracy {
     }
 
     /// The same by the implicit method, for the orbit of a stiff system.
-    pub(crate) fn stiff(self) -> Self {
+    pub fn stiff(self) -> Self {
         let implicit = Self::of(Choice::Rosenbrock(RosenbrockMethod::Rodas5P));
         OrbitAccuracy {
             method: implicit.method,

@@ -18,8 +18,9 @@ pub use lyapunov::{
 };
 pub use periodicity::{LONGEST_PERIOD, Periodic, periodicity};
 pub(crate) use periodicity::{PeriodicSearch, reduce};
+pub use regime::aperiodic;
 pub use regime::{FEWEST_RETURNS, Regime, RegimeVerdict, verdict};
-pub(crate) use regime::{IRREGULAR, REGULAR, aperiodic, points};
+pub(crate) use regime::{IRREGULAR, REGULAR, points};
 pub(crate) use rest::{equilibrium_near, growth};
 pub(crate) use returns::{AT_START, Recorder, Watched};
 pub use returns::{Ended, Return, ReturnRecord, See, Watching, record, usual_patience};

@@ -33,7 +33,6 @@ const STAYED: f64 = 0.1;
 
 /// What a flow does in the end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Regime {
     /// It rests.
     Steady,
@@ -129,7 +128,7 @@ pub fn verdict(
 }
 
 /// The regime of returns, 200 or more, that close in on no periodic point.
-pub(crate) fn aperiodic(
+pub fn aperiodic(
     surface: &Surface,
     returns: &[Return],
     accuracy: f64,

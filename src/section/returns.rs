@@ -62,7 +62,6 @@ pub fn usual_patience(driving: f64, stiffness: f64) -> f64 {
 
 /// How a recording ended.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub enum Ended {
     /// With all returns.
     Complete,

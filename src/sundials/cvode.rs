@@ -42,7 +42,6 @@ pub enum Mode {
 
 /// Why [`Cvode::advance`] returned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Reason {
     /// The time asked for is reached.
     Time,

@@ -117,7 +117,6 @@ impl<const N: usize> Default for KinsolSettings<N> {
 
 /// How an iteration ended that KINSOL calls successful.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Outcome {
     /// The residual tolerance is met.
     Converged,

@@ -241,7 +241,6 @@ impl SweepSettings {
 
 /// What was found at a point.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct SweepRow {
     /// The point's number.
     pub number: usize,

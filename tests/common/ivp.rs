@@ -3,7 +3,7 @@
 use crate::common::text::file;
 use std::convert::Infallible;
 use twinslip::Error;
-use twinslip::scene::{IntegrateOptions, IvpAsked, IvpOutcome, IvpPlan};
+use twinslip_tasks::scene::{IntegrateOptions, IvpAsked, IvpOutcome, IvpPlan};
 
 /// All methods of a build with SUNDIALS, or without.
 pub fn methods() -> Vec<&'static str> {

@@ -1,6 +1,6 @@
 //! Reports to try the page with: a small one as it is meant, and one with contents that break pages.
 
-use twinslip::output::page::{Figure, FileRow, Page, Score, Table};
+use twinslip_output::page::{Figure, FileRow, Page, Score, Table};
 
 /// A picture of that size.
 pub fn picture(width: u32, height: u32) -> String {

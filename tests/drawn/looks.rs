@@ -3,8 +3,8 @@
 
 use crate::drawn::{BLUE, Shape, alone, numbers, seen, unit};
 use std::sync::atomic::AtomicBool;
-use twinslip::output::plot::{Axis, Drawing, Mark, Note, Panel, PlotSeries};
-use twinslip::paper::{Make, Pieces, Product};
+use twinslip_output::plot::{Axis, Drawing, Mark, Note, Panel, PlotSeries};
+use twinslip_paper::{Make, Pieces, Product};
 
 /// Where curves of a colour run: the ends of their straight pieces, in order.
 fn pieces(svg: &str, colour: [u8; 3]) -> Vec<Vec<(f64, f64)>> {

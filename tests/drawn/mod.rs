@@ -5,7 +5,7 @@ pub mod sweeps;
 mod words;
 
 use resvg::usvg::{Group, Node, Options, Paint, Rect, Tree};
-use twinslip::output::plot::{Axis, Drawing, Panel};
+use twinslip_output::plot::{Axis, Drawing, Panel};
 
 pub const INK: [u8; 3] = [40, 40, 40];
 pub const GRID: [u8; 3] = [228, 228, 228];

@@ -6,9 +6,9 @@ use resvg::usvg::Rect;
 use twinslip::bifurcation::LocusRow;
 use twinslip::equilibrium::Symmetry;
 use twinslip::number::Uncertain;
-use twinslip::scene::Units;
 use twinslip::section::Regime;
-use twinslip::views::{GridSide, PointOutcome, basin_map, regime_map};
+use twinslip_tasks::scene::Units;
+use twinslip_tasks::views::{GridSide, PointOutcome, basin_map, regime_map};
 
 const TORUS: [u8; 3] = [182, 168, 113];
 const PERIOD_3: [u8; 3] = [182, 71, 132];

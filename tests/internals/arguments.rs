@@ -1,6 +1,6 @@
 //! The command line.
 
-use twinslip::internals::program;
+use twinslip_cli::internals::program;
 #[test]
 fn arguments_are_consistent() {
     program().debug_assert();

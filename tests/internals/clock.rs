@@ -1,7 +1,7 @@
 //! Processor time.
 
 use std::time::{Duration, Instant};
-use twinslip::internals::timed;
+use twinslip_paper::clock::timed;
 
 #[test]
 fn waiting_takes_no_processor_time_and_work_does() {

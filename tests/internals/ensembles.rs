@@ -1,7 +1,7 @@
 //! What is known of a number by the members of an ensemble.
 
 use nalgebra::DMatrix;
-use twinslip::internals::{DEVIATIONS, Item, Measured, Sample, Sides, bands, matched, normal};
+use twinslip_cli::internals::{DEVIATIONS, Item, Measured, Sample, Sides, bands, matched, normal};
 
 fn items(all: &[(&str, f64)]) -> Vec<Item> {
     let item = |&(class, place): &(&str, f64)| Item {

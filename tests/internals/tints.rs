@@ -1,7 +1,7 @@
 //! Colours of regimes.
 
-use twinslip::internals::{LIGHTEST, RegimeKind};
-use twinslip::output::plot::Shade;
+use twinslip_output::plot::Shade;
+use twinslip_tasks::views::sweep::tints::{LIGHTEST, RegimeKind};
 const ALL: [RegimeKind; 11] = [
     RegimeKind::SteadySymmetric,
     RegimeKind::SteadyAsymmetric,

@@ -1,6 +1,6 @@
 //! Numbers as people write them.
 
-use twinslip::internals::{count, flagged, several, time};
+use twinslip_cli::internals::{count, flagged, several, time};
 
 #[test]
 fn an_option_is_told_as_its_flag() {

@@ -112,7 +112,7 @@ fn full() {
         tally.markdown(),
         long::table()
     );
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/stress/table.md");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/stress/table.md");
     std::fs::write(path, text).expect("a writable folder");
     check(&tally);
 }

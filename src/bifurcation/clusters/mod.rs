@@ -21,7 +21,6 @@ use crate::error::{Error, Result};
 
 /// A point of a branch of equilibria of N interfaces.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct ClusterRow {
     /// The number of the branch, from 0.
     pub branch: usize,

@@ -248,7 +248,7 @@ impl Taylor {
     }
 
     /// With this largest step.
-    pub(crate) fn stepping(self, max_step: f64) -> Self {
+    pub fn stepping(self, max_step: f64) -> Self {
         Taylor { max_step, ..self }
     }
 

@@ -1,0 +1,357 @@
+//! `twinslip orbit`.
+
+use super::call::Call;
+use super::integrate::PlannedRun;
+use super::report::{self, Report};
+use super::stream::StreamOut;
+use super::words::{count, several};
+use super::{Ending, progress, written};
+use serde_json::{Value, json};
+use std::path::Path;
+use twinslip::equilibrium::Verdict;
+use twinslip::error::{Error, Result};
+use twinslip::number::Uncertain;
+use twinslip::orbit::{Crosscheck, FoundOrbit, Kind, Multiplier, Orbit, OrbitAccuracy};
+use twinslip_output::{self, Format, RowList, plot};
+use twinslip_tasks::scene::{
+    Column, Described, OrbitOptions, OrbitPlan, Plan, Quantity, System, TextModel, TextOrbitPlan,
+    Units,
+};
+use twinslip_tasks::views;
+
+/// A search for a periodic orbit, of interfaces or of a system of one's own.
+pub trait OrbitSearch {
+    /// The run along an orbit.
+    type Run: PlannedRun;
+    /// The plan in words.
+    fn explain(&self) -> String;
+    /// What the orbit is of.
+    fn system(&self) -> &dyn Described;
+    /// By which method an orbit was computed, and by which second one.
+    fn accuracy(&self, orbit: &Orbit) -> (OrbitAccuracy, Option<OrbitAccuracy>);
+    /// What a state may err by in a step beside its relative error: one number, or one for each state.
+    fn absolute_tolerance(&self, accuracy: &OrbitAccuracy) -> Value {
+        json!(accuracy.tolerances.atol)
+    }
+    /// Whether there are to be rows.
+    fn has_rows(&self) -> bool;
+    fn find(&self) -> Result<FoundOrbit>;
+    fn crosscheck(&self, orbit: &Orbit) -> Result<Option<Crosscheck>>;
+    /// `None` where neither rows nor a picture are asked for.
+    fn along(&self, orbit: &Orbit) -> Option<Self::Run>;
+    /// The columns of orbits.
+    fn columns(&self) -> Vec<Column<Orbit>>;
+    /// An orbit as an object.
+    fn object(&self, orbit: &Orbit) -> Value;
+}
+
+pub fn run(options: &OrbitOptions, call: &Call) -> Result<Ending> {
+    match TextModel::of(&options.model, &[])? {
+        Some(model) => search(&TextOrbitPlan::new(options, model)?, options, call),
+        None => search(&OrbitPlan::new(options)?, options, call),
+    }
+}
+
+impl OrbitSearch for OrbitPlan {
+    type Run = Plan;
+
+    fn explain(&self) -> String {
+        self.explain()
+    }
+
+    fn system(&self) -> &dyn Described {
+        &self.system
+    }
+
+    fn accuracy(&self, _: &Orbit) -> (OrbitAccuracy, Option<OrbitAccuracy>) {
+        (self.accuracy, self.second)
+    }
+
+    fn has_rows(&self) -> bool {
+        self.rows.is_some()
+    }
+
+    fn find(&self) -> Result<FoundOrbit> {
+        self.find()
+    }
+
+    fn crosscheck(&self, orbit: &Orbit) -> Result<Option<Crosscheck>> {
+        self.crosscheck(orbit)
+    }
+
+    fn along(&self, orbit: &Orbit) -> Option<Plan> {
+        self.along(orbit)
+    }
+
+    fn columns(&self) -> Vec<Column<Orbit>> {
+        views::orbit_columns(self.system.interfaces)
+    }
+
+    fn object(&self, orbit: &Orbit) -> Value {
+        object(orbit, &self.system)
+    }
+}
+
+fn search(plan: &impl OrbitSearch, options: &OrbitOptions, call: &Call) -> Result<Ending> {
+    let picture = options.plot.as_deref();
+    picture.map(plot::PictureFormat::of).transpose()?;
+    let others: Vec<&Path> = picture.into_iter().collect();
+    let report = Report::new(&options.output, call, &others)?;
+    if options.output.explain {
+        call.say(plan.explain());
+    }
+    let FoundOrbit { orbit, others } =
+        progress::during(&report, "looking for the orbit", || plan.find())?;
+    // Only the object tells of the second opinion: rows need not wait for it.
+    let in_rows = report.format != Format::Json;
+    let mut ending = Ending::Done;
+    if in_rows && !plan.has_rows() {
+        ending = write_orbits(plan, &report, &orbit, &others)?;
+    }
+    let rows = along(plan, &report, &orbit, picture)?;
+    let second = plan.accuracy(&orbit).1;
+    let second = second.map_or("", |second| second.method.name());
+    let words = format!("once more, by {second}");
+    let checked = progress::during(&report, &words, || plan.crosscheck(&orbit));
+    let (checked, unchecked) = match checked {
+        Ok(Some(checked)) => (Some(checked), None),
+        Ok(None) => (None, Some("none is asked for".to_owned())),
+        Err(error) => {
+            let why = match error {
+                Error::TooManySteps { limit, .. } if options.crosscheck.is_none() => format!(
+                    "the crosscheck by {second} was left out, as it takes longer than the orbit itself: more than {} steps; `crosscheck` {second} does it all the same",
+                    count(limit)
+                ),
+                error => format!("the crosscheck by {second} failed: {error}"),
+            };
+            report.say(&why);
+            (None, Some(call.told(&why)))
+        }
+    };
+    if !in_rows {
+        let checked = (checked.as_ref(), unchecked.as_deref());
+        let result = result(plan, &orbit, &others, checked, rows.as_ref());
+        ending = write_object(plan, &report, &orbit, result)?;
+    }
+    report.say(summary(&orbit, checked.as_ref(), plan.system().units()));
+    Ok(match ending {
+        Ending::Done if orbit.verdict() == Verdict::Undecided => report.undecided(
+            "the stability of the orbit, as ln |mu| of a multiplier is 0 within its error; other parameters decide, or a smaller `rtol`",
+        ),
+        ending => ending,
+    })
+}
+
+/// What was found, and at which cost.
+fn summary(orbit: &Orbit, checked: Option<&Crosscheck>, units: &Units) -> String {
+    let unit = match units.name(Quantity::Time) {
+        "1" => String::new(),
+        unit => format!(" {unit}"),
+    };
+    let period = units.outward_uncertain(Quantity::Time, orbit.period);
+    let mut text = format!(
+        "period ({period}){unit}, {}; {}, {}, {}",
+        orbit.verdict().name(),
+        several(orbit.nodes.len(), "node", "nodes"),
+        several(orbit.iterations, "iteration", "iterations"),
+        several(orbit.work.steps, "step", "steps")
+    );
+    if orbit.in_family {
+        text += "; one of a family of periodic orbits with these parameters: a multiplier beside the trivial one is 1";
+    }
+    if let Some(Crosscheck {
+        orbit: second,
+        period_difference,
+        ..
+    }) = checked
+    {
+        let relative = period_difference / orbit.period.value;
+        text += &format!(
+            "; the period by {} differs by {relative:.1e} of it",
+            second.method
+        );
+    }
+    text
+}
+
+/// Goes along the orbit for the rows and the picture that are asked for, and gives the rows; none where nobody asks for them, or reads
+/// them.
+fn along(
+    plan: &impl OrbitSearch,
+    report: &Report<'_>,
+    orbit: &Orbit,
+    picture: Option<&Path>,
+) -> Result<Option<RowList>> {
+    let Some(run) = plan.along(orbit) else {
+        return Ok(None);
+    };
+    let columns = run.columns();
+    let out = if plan.has_rows() {
+        let units = plan.system().units();
+        let mut remarks = report.remarks(plan.system(), &numerics(plan, orbit));
+        remarks.push(format!("orbit: {}", summary(orbit, None, units)));
+        let columns = (columns, units);
+        StreamOut::new(report, remarks, columns, false)
+    } else {
+        Ok(StreamOut::kept(report, columns))
+    };
+    let mut out = match out {
+        Ok(out) => out.drawing(run.pictured()),
+        Err(error) => return written(Err(error), &report.place).map(|_| None),
+    };
+    let failure = run.run(&mut out)?.failure;
+    out.progress.finish();
+    if let Some(error) = out.broken {
+        return written(Err(error), &report.place).map(|_| None);
+    }
+    if let Some(path) = picture {
+        report.draw(path, &run.picture(&out.drawn))?;
+    }
+    if !plan.has_rows() {
+        return failure.map_or(Ok(None), Err);
+    }
+    report.ended(failure.map_or(Ok(Ending::Done), Err))?;
+    Ok(Some(out.rows))
+}
+
+fn numerics(plan: &impl OrbitSearch, orbit: &Orbit) -> Value {
+    let (accuracy, second) = plan.accuracy(orbit);
+    json!({
+        "method": orbit.method,
+        "rtol": accuracy.tolerances.rtol,
+        "atol": plan.absolute_tolerance(&accuracy),
+        "max_step": plan.system().units().max_step(accuracy.tolerances),
+        "max_steps": accuracy.max_steps,
+        "crosscheck": second.map(|second| second.method.name()),
+    })
+}
+
+/// What the object holds.
+fn result(
+    plan: &impl OrbitSearch,
+    orbit: &Orbit,
+    others: &[Orbit],
+    (checked, unchecked): (Option<&Crosscheck>, Option<&str>),
+    rows: Option<&RowList>,
+) -> Value {
+    let mut main = plan.object(orbit);
+    main["crosscheck_note"] = json!(unchecked);
+    main["crosscheck"] = checked.map_or(Value::Null, |checked| comparison(checked, plan));
+    let rest: Vec<Value> = others.iter().map(|other| plan.object(other)).collect();
+    let mut result = json!({"orbit": main, "others": rest});
+    if let Some(rows) = rows {
+        result["rows"] = json!(rows);
+    }
+    result
+}
+
+fn write_object(
+    plan: &impl OrbitSearch,
+    report: &Report<'_>,
+    orbit: &Orbit,
+    result: Value,
+) -> Result<Ending> {
+    let mut work = report::work(&orbit.work);
+    work["nodes"] = json!(orbit.nodes.len());
+    work["iterations"] = json!(orbit.iterations);
+    let bytes = report.envelope(plan.system(), numerics(plan, orbit), result, work, None);
+    report.write(&bytes)
+}
+
+/// A row for each orbit.
+fn write_orbits(
+    plan: &impl OrbitSearch,
+    report: &Report<'_>,
+    orbit: &Orbit,
+    others: &[Orbit],
+) -> Result<Ending> {
+    let system = plan.system();
+    report.write_all(
+        system.units(),
+        report.remarks(system, &numerics(plan, orbit)),
+        &plan.columns(),
+        std::iter::once(orbit).chain(others),
+    )
+}
+
+/// tau and ln psi of each interface in the user's units.
+fn outward_point(orbit: &Orbit, system: &System) -> Vec<f64> {
+    let quantity = |i| {
+        if i == 0 {
+            Quantity::Stress
+        } else {
+            Quantity::LogState
+        }
+    };
+    let point = orbit.point.iter().enumerate();
+    let mut point: Vec<f64> = point
+        .map(|(i, &x)| system.units.outward(quantity(i), x))
+        .collect();
+    // Where both interfaces move alike they share a state.
+    while point.len() < system.interfaces + 1 {
+        point.push(point[1]);
+    }
+    point
+}
+
+fn object(orbit: &Orbit, system: &System) -> Value {
+    let units = &system.units;
+    let logs: Vec<Value> = orbit.floquet.multipliers.iter().map(logarithm).collect();
+    json!({
+        "symmetry": orbit.symmetry.name(),
+        "period": report::uncertain(units, Quantity::Time, orbit.period),
+        "point": outward_point(orbit, system),
+        "point_uncertainty": orbit.point_uncertainty,
+        "stress_min": report::uncertain(units, Quantity::Stress, orbit.stress_min),
+        "stress_max": report::uncertain(units, Quantity::Stress, orbit.stress_max),
+        "slip_rate_max": units.outward(Quantity::SlipRate, orbit.slip_rate_max),
+        "state_min": units.outward(Quantity::State, orbit.state_min),
+        "multipliers": multipliers(orbit),
+        "log_multipliers": logs,
+        "trivial_defect": orbit.floquet.trivial_defect,
+        "liouville_defect": orbit.floquet.liouville_defect,
+        "verdict": orbit.verdict().name(),
+        "family": orbit.in_family,
+        "method": orbit.method,
+    })
+}
+
+/// All multipliers, the trivial one first; of a conjugate pair the second one below the axis.
+pub(super) fn multipliers(orbit: &Orbit) -> Vec<[f64; 2]> {
+    let mut multipliers = vec![[1.0, 0.0]];
+    let mut above = true;
+    for multiplier in &orbit.floquet.multipliers {
+        let mu = multiplier.value();
+        let complex = multiplier.kind == Kind::Complex;
+        multipliers.push([mu.re, if complex && !above { -mu.im } else { mu.im }]);
+        above = !complex || !above;
+    }
+    multipliers
+}
+
+/// A multiplier by its logarithm.
+pub(super) fn logarithm(multiplier: &Multiplier) -> Value {
+    let Uncertain { value, uncertainty } = multiplier.ln_abs;
+    let known = multiplier.kind != Kind::BelowFloor;
+    json!({
+        "ln_abs": known.then(|| twinslip_output::uncertain((value, uncertainty))),
+        "ln_abs_at_most": (!known).then_some(value),
+        "angle_over_pi": multiplier.known_angle(),
+        "kind": multiplier.kind.name(),
+    })
+}
+
+fn comparison(checked: &Crosscheck, plan: &impl OrbitSearch) -> Value {
+    let second = plan.object(&checked.orbit);
+    let units = plan.system().units();
+    let difference = units.outward(Quantity::Time, checked.period_difference);
+    json!({
+        "method": checked.orbit.method,
+        "period_difference": difference,
+        "ln_abs_difference": checked.ln_abs_difference,
+        "period": second["period"],
+        "log_multipliers": second["log_multipliers"],
+        "verdict": second["verdict"],
+        "steps": checked.orbit.work.steps,
+    })
+}

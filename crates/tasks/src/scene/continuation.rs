@@ -1,0 +1,332 @@
+//! What a user can set of branches and curves; as in `options`, these fields are the flags and the keys of a scene file.
+
+use super::branch::{BranchKind, BranchParameter};
+use super::ensemble::EnsembleOptions;
+use super::following::SYMMETRIES;
+use super::general::{SlabSubject, plane};
+use super::locus::CurveChoice;
+use super::options::{ModelOptions, Names, OutputOptions, count, number};
+use super::orbit::SECOND_METHOD;
+use super::system::System;
+use super::unequal::OfOne;
+use std::path::PathBuf;
+use twinslip::bifurcation::MAX_POINTS;
+use twinslip::error::{Error, Result};
+use twinslip::integrate::Choice;
+
+/// How branches and curves are followed.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(next_help_heading = "Numerics")]
+pub struct ContinuationOptions {
+    /// Factor on the limits of continuation steps: below 1 there are more points, above 1 fewer
+    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = number, allow_negative_numbers = true)]
+    pub step_limit: f64,
+    /// How many points there may be, of all branches or curves together; beyond is a failure, and the points are kept
+    #[arg(long, value_name = "N", default_value_t = MAX_POINTS)]
+    pub max_points: usize,
+    /// Relative accuracy of special points, and of all points of a curve
+    #[arg(long, value_name = "X", default_value = "1e-11", value_parser = number, allow_negative_numbers = true)]
+    pub tolerance: f64,
+    /// Compute each special point of orbits once more with a second method and report the difference [METHOD: cvode-adams
+    /// unless given; rodas5p in a build without SUNDIALS]
+    #[arg(long, value_name = "METHOD", num_args = 0..=1, default_missing_value = SECOND_METHOD, value_parser = Names::of(Choice::names()), hide_possible_values = true)]
+    pub crosscheck: Option<String>,
+}
+
+/// Where branches begin, but for those of equal interfaces in V_H and K, which all are found.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(next_help_heading = "Search")]
+pub struct SearchOptions {
+    /// With --system, or a --law from a file: branches of equilibria begin at all in a box, a range for every state, and end
+    /// where they leave it: x=-10:10,y=0:5
+    #[arg(
+        id = "box",
+        long = "box",
+        value_name = "RANGES",
+        allow_hyphen_values = true
+    )]
+    pub within: Option<String>,
+    /// Branches of orbits begin at or near this point of an orbit, at --from: TAU,PSI1,PSI2, with --system the values of all states
+    /// in their order. Branches of equilibria of a --system begin near it [default: the file's table start]
+    #[arg(long, value_name = "START", allow_hyphen_values = true)]
+    pub start: Option<String>,
+    /// With --start of an orbit: its period, roughly
+    #[arg(long, value_name = "T", value_parser = number, requires = "start", allow_negative_numbers = true)]
+    pub period_guess: Option<f64>,
+}
+
+impl SearchOptions {
+    /// # Errors
+    /// [`Error::Input`] for a box, of what has all its equilibria found without one.
+    pub fn without_box(&self) -> Result<()> {
+        match self.within {
+            None => Ok(()),
+            Some(_) => Err(Error::Input(
+                "`box` is where equilibria of a `system` or a `law` from a file are looked for; of built-in laws all are found without it".into(),
+            )),
+        }
+    }
+
+    /// # Errors
+    /// [`Error::Input`] where a start or a box is given: all branches are found without one.
+    pub fn unused(&self) -> Result<()> {
+        self.without_box()?;
+        match self.start {
+            None => Ok(()),
+            Some(_) => Err(Error::Input(
+                "`start` has no meaning here: all branches are found from equilibria and Hopf points".into(),
+            )),
+        }
+    }
+}
+
+/// `branch`: equilibria or periodic orbits as a parameter varies.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+pub struct BranchOptions {
+    /// What is followed: equilibria or orbits; in a scene file the key `of`
+    #[arg(value_name = "equilibria|orbits", value_parser = Names::of(BranchKind::NAMES), hide_possible_values = true)]
+    pub of: Option<String>,
+    /// What slides, with the parameter that stays fixed: --stiffness, or --driving along stiffness.
+    #[command(flatten)]
+    pub model: ModelOptions,
+    /// The uncertainty of a fit.
+    #[command(flatten)]
+    pub ensemble: EnsembleOptions,
+    /// What varies: driving (V_H), stiffness (K) or any other parameter by its name; of a system from a file any of its own
+    /// [default: driving]
+    #[arg(
+        long,
+        value_name = "PARAMETER",
+        value_parser = Names::of(BranchParameter::NAMES),
+        hide_possible_values = true,
+        help_heading = "Branch"
+    )]
+    pub along: Option<String>,
+    /// Where the branches begin [default: V_H = 1e-3 V*; K = 1e-3 a sigma/L; others have none]
+    #[arg(long, value_name = "A", value_parser = number, allow_negative_numbers = true, help_heading = "Branch")]
+    pub from: Option<f64>,
+    /// Where they end; it may be the smaller one [default: V_H = 1e6 V*; K = 1 a sigma/L]
+    #[arg(long, value_name = "B", value_parser = number, allow_negative_numbers = true, help_heading = "Branch")]
+    pub to: Option<f64>,
+    /// symmetric (both interfaces alike), asymmetric or both
+    #[arg(
+        long,
+        value_name = "NAME",
+        default_value = "both",
+        value_parser = Names::of(SYMMETRIES),
+        hide_possible_values = true,
+        help_heading = "Branch"
+    )]
+    pub symmetry: String,
+    /// Values of the parameter to land on exactly, comma-separated; their rows have the label UZ
+    #[arg(
+        long,
+        value_name = "V1,V2,...",
+        allow_hyphen_values = true,
+        help_heading = "Branch"
+    )]
+    pub at: Option<String>,
+    /// How many period doublings to follow: the branches of orbits with doubled period are computed too
+    #[arg(long, value_name = "N", value_parser = count, default_value = "0", help_heading = "Branch")]
+    pub doublings: usize,
+    /// Where equilibria and orbits of a system from a file are looked for.
+    #[command(flatten)]
+    pub search: SearchOptions,
+    /// How they are followed.
+    #[command(flatten)]
+    pub continuation: ContinuationOptions,
+    /// Continue FILE, the CSV of an interrupted run of the same command: its complete branches are kept
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub resume: Option<PathBuf>,
+    /// Draw stress (and period) against the parameter, stable parts solid, as FILE.svg or FILE.png
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub plot: Option<PathBuf>,
+    /// Where results go.
+    #[command(flatten)]
+    pub output: OutputOptions,
+}
+
+impl BranchOptions {
+    /// Whether equilibria of many equal interfaces with a law that is built in are followed along V_H or K: by the shares of the
+    /// interfaces on the branches of the steady curve, all of them.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] and [`Error::Input`] for what `set` says of single interfaces.
+    pub fn by_shares(&self) -> Result<bool> {
+        let along = self.along.as_deref().unwrap_or("driving");
+        Ok(self.of.as_deref() == Some("equilibria")
+            && ["driving", "stiffness"].contains(&along)
+            && self.search.start.is_none()
+            && many_and_equal(&self.model)?)
+    }
+
+    /// The interfaces, where branches are followed in any parameter: they differ, or neither V_H nor K varies.
+    ///
+    /// # Errors
+    /// Those of the system; [`Error::Input`] for places of a search that equilibria do without.
+    pub fn any_parameter(&self) -> Result<Option<SlabSubject>> {
+        let along = self.along.as_deref().unwrap_or("driving");
+        let system = System::new(&self.model)?;
+        if system.unequal.is_none() && ["driving", "stiffness"].contains(&along) {
+            return Ok(None);
+        }
+        let subject = SlabSubject::new(system, &[along])?;
+        let search = &self.search;
+        Ok(Some(match self.of.as_deref() {
+            Some("orbits") => {
+                search.without_box()?;
+                subject.beginning(search.start.as_deref(), search.period_guess)?
+            }
+            _ => {
+                search.unused()?;
+                subject
+            }
+        }))
+    }
+}
+
+/// Whether there are more than two interfaces, all equal, with a law that is built in.
+fn many_and_equal(model: &ModelOptions) -> Result<bool> {
+    let slab = &model.slab;
+    Ok(slab.count() > 2
+        && slab.clusters.is_none()
+        && slab.text.system.is_none()
+        && slab.law_file().is_none()
+        && !OfOne::read(slab)?.any())
+}
+
+impl LocusOptions {
+    /// Whether curves of equilibria of many equal interfaces are asked for, in the plane of V_H and K: of all their shares.
+    ///
+    /// # Errors
+    /// As of [`BranchOptions::by_shares`].
+    pub fn by_shares(&self) -> Result<bool> {
+        let names = plane(self.plane.as_deref().unwrap_or("driving,stiffness"))?;
+        Ok(!CurveChoice::named(self.of.as_deref())?.of_orbits()
+            && names.contains(&"driving")
+            && names.contains(&"stiffness")
+            && self.search.start.is_none()
+            && many_and_equal(&self.model)?)
+    }
+
+    /// The interfaces, where curves are followed in any plane: they differ, or not both V_H and K vary.
+    ///
+    /// # Errors
+    /// Those of the system, and of [`plane`].
+    pub fn any_parameter(&self) -> Result<Option<SlabSubject>> {
+        let names = plane(self.plane.as_deref().unwrap_or("driving,stiffness"))?;
+        let system = System::new(&self.model)?;
+        let loading = names.contains(&"driving") && names.contains(&"stiffness");
+        if system.unequal.is_none() && loading {
+            return Ok(None);
+        }
+        let search = &self.search;
+        let subject = SlabSubject::new(system, &names)?;
+        if !CurveChoice::named(self.of.as_deref())?.of_orbits() {
+            search.unused()?;
+            return Ok(Some(subject));
+        }
+        search.without_box()?;
+        let subject = subject.beginning(search.start.as_deref(), search.period_guess)?;
+        Ok(Some(subject))
+    }
+}
+
+/// `locus`: a curve of bifurcations in the plane of V_H and K.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+pub struct LocusOptions {
+    /// The bifurcation that is followed: pitchfork, saddle-node or hopf of equilibria; orbit-pitchfork, orbit-saddle-node,
+    /// period-doubling or torus of periodic orbits; in a scene file the key `of`
+    #[arg(value_name = "BIFURCATION", value_parser = Names::of(CurveChoice::NAMES), hide_possible_values = true)]
+    pub of: Option<String>,
+    /// What slides; both V_H and K vary and are not given.
+    #[command(flatten)]
+    pub model: ModelOptions,
+    /// The uncertainty of a fit.
+    #[command(flatten)]
+    pub ensemble: EnsembleOptions,
+    /// symmetric (both interfaces alike), asymmetric or both, where there are both
+    #[arg(
+        long,
+        value_name = "NAME",
+        default_value = "both",
+        value_parser = Names::of(SYMMETRIES),
+        hide_possible_values = true,
+        help_heading = "Curve"
+    )]
+    pub symmetry: String,
+    /// V_H from A to B [default: 1e-3:1e6 V*]
+    #[arg(
+        long,
+        value_name = "A:B",
+        allow_hyphen_values = true,
+        help_heading = "Curve"
+    )]
+    pub driving_range: Option<String>,
+    /// K from A to B [default: 1e-3:1 a sigma/L]
+    #[arg(
+        long,
+        value_name = "A:B",
+        allow_hyphen_values = true,
+        help_heading = "Curve"
+    )]
+    pub stiffness_range: Option<String>,
+    /// Values of V_H to land on exactly, comma-separated, at every crossing
+    #[arg(
+        long,
+        value_name = "V1,V2,...",
+        allow_hyphen_values = true,
+        help_heading = "Curve"
+    )]
+    pub at_driving: Option<String>,
+    /// Values of K to land on exactly, comma-separated, at every crossing
+    #[arg(
+        long,
+        value_name = "K1,K2,...",
+        allow_hyphen_values = true,
+        help_heading = "Curve"
+    )]
+    pub at_stiffness: Option<String>,
+    /// Say at every point whether the bifurcation is supercritical or subcritical
+    #[arg(long, help_heading = "Curve")]
+    pub criticality: bool,
+    /// The two parameters that vary, by their names [default: driving,stiffness]
+    #[arg(
+        id = "in",
+        long = "in",
+        value_name = "NAME1,NAME2",
+        help_heading = "Curve"
+    )]
+    pub plane: Option<String>,
+    /// NAME=A,B: the range of one of these; may be given again
+    #[arg(
+        long,
+        value_name = "NAME=A,B",
+        allow_hyphen_values = true,
+        help_heading = "Curve"
+    )]
+    pub range: Vec<String>,
+    /// NAME=V1,V2,...: values of one of these to land on exactly, at every crossing; may be given again
+    #[arg(
+        long,
+        value_name = "NAME=V1,V2,...",
+        allow_hyphen_values = true,
+        help_heading = "Curve"
+    )]
+    pub at: Vec<String>,
+    /// Where equilibria and orbits of a system from a file are looked for.
+    #[command(flatten)]
+    pub search: SearchOptions,
+    /// How it is followed.
+    #[command(flatten)]
+    pub continuation: ContinuationOptions,
+    /// Continue FILE, the CSV of an interrupted run of the same command: its complete curves are kept
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub resume: Option<PathBuf>,
+    /// Draw the curves in the plane of V_H and K as FILE.svg or FILE.png
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub plot: Option<PathBuf>,
+    /// Where results go.
+    #[command(flatten)]
+    pub output: OutputOptions,
+}

@@ -1,0 +1,151 @@
+//! What is given of a fit's parameters: values, and ranges.
+
+use super::options::FitOptions;
+use super::unit::GivenStiffness;
+use crate::scene::set::assignments;
+use twinslip::error::{Error, Result};
+use twinslip::fit::{FreeParameter, Scale};
+use twinslip::friction::positive;
+
+/// Values of parameters stay between these, and those of others between minus and plus the larger.
+const DOMAIN: (f64, f64) = (1e-30, 1e30);
+/// A slip length that is longer, in what the load point moves, does not show in the record.
+const LONGEST: f64 = 100.0;
+
+/// The values that were given, by the names of parameters; the stiffness as friction per metre.
+pub(super) struct Given {
+    values: Vec<(String, f64)>,
+    /// Slip lengths are looked for between these, in m.
+    lengths: (f64, f64),
+}
+
+impl Given {
+    /// `moved` is how far the load point moves in all, and on average between two samples, in m.
+    pub fn new(
+        options: &FitOptions,
+        normal_stress: Option<f64>,
+        (moved, spacing): (f64, f64),
+    ) -> Result<Self> {
+        let stiffness = match &options.stiffness {
+            None => None,
+            Some(text) => Some(match (GivenStiffness::read(text)?, normal_stress) {
+                (GivenStiffness::OfFriction(k), _) => k,
+                (GivenStiffness::OfStress(k), Some(sigma)) => k / sigma,
+                (GivenStiffness::OfStress(_), None) => {
+                    return Err(Error::Input(
+                        "`stiffness` in Pa/m needs the `normal_stress`; or give it as friction per length, such as 0.003/um".into(),
+                    ));
+                }
+            }),
+        };
+        let mut given = Vec::new();
+        for (name, value) in [
+            ("direct_effect", options.direct_effect),
+            ("evolution_effect", options.evolution_effect),
+            ("slip_length", options.slip_length),
+            ("slip_length_2", options.slip_length_2),
+            ("reference_friction", options.reference_friction),
+            ("healing_time", options.healing_time),
+            ("stiffness", stiffness),
+        ] {
+            let checked = value.map(|x| positive(&name.replace('_', "-"), x));
+            given.extend(checked.transpose()?.map(|x| (name.to_owned(), x)));
+        }
+        for (name, value) in [
+            ("evolution_effect_2", options.evolution_effect_2),
+            ("residual_strength", options.residual_strength),
+        ] {
+            given.extend(value.map(|x| (name.to_owned(), x)));
+        }
+        for (name, value) in assignments(&options.set)? {
+            given.push((name.replace('-', "_"), value));
+        }
+        Ok(Given {
+            values: given,
+            // Over a shorter length friction decays between two samples.
+            lengths: (spacing, LONGEST * moved),
+        })
+    }
+
+    /// Those of a law's parameters.
+    pub fn of(
+        &self,
+        has: &[&'static str],
+        law: &str,
+        alone: bool,
+    ) -> Result<Vec<(&'static str, Option<f64>)>> {
+        // Of several laws one has what another has not.
+        let strange = self
+            .values
+            .iter()
+            .find(|(name, _)| !has.contains(&name.as_str()));
+        if let Some((name, _)) = strange.filter(|_| alone) {
+            return Err(Error::Input(format!(
+                "`{name}` is no parameter of the law {law}, which has {}",
+                has.join(", ")
+            )));
+        }
+        let value = |name: &str| {
+            self.values
+                .iter()
+                .rev()
+                .find(|(own, _)| own == name)
+                .map(|(_, x)| *x)
+        };
+        Ok(has.iter().map(|name| (*name, value(name))).collect())
+    }
+}
+
+/// Between what a parameter is looked for.
+pub(super) fn bounds(
+    (options, given): (&FitOptions, &Given),
+    name: &str,
+    scale: Scale,
+) -> Result<(f64, f64)> {
+    let is_length = name.starts_with("slip_length");
+    let (least, most) = match scale {
+        Scale::Logarithmic => DOMAIN,
+        Scale::Linear => (-DOMAIN.1, DOMAIN.1),
+    };
+    let Some((text, own)) = options.bounds.iter().find_map(|text| {
+        let (own, range) = text.split_once('=')?;
+        (own.trim().replace('-', "_") == name).then_some((text, range))
+    }) else {
+        return Ok(match is_length {
+            true => (least.max(given.lengths.0), most.min(given.lengths.1)),
+            false => (least, most),
+        });
+    };
+    let wrong = || Error::Input(format!("`bounds` {text:?} must be NAME=A:B with A below B"));
+    let (low, high) = own.split_once(':').ok_or_else(wrong)?;
+    let read = |text: &str| text.trim().parse::<f64>().map_err(|_| wrong());
+    let (low, high) = (read(low)?, read(high)?);
+    if low >= high {
+        return Err(wrong());
+    }
+    if low < least {
+        return Err(Error::Input(format!(
+            "`bounds` {text:?}: {name} is positive, so must be its lower bound"
+        )));
+    }
+    Ok((low, high.min(most)))
+}
+
+/// # Errors
+/// [`Error::Input`] for bounds of what is not free.
+pub(super) fn unknown_bounds(options: &FitOptions, free: &[FreeParameter]) -> Result<()> {
+    for text in &options.bounds {
+        let name = text
+            .split('=')
+            .next()
+            .unwrap_or(text)
+            .trim()
+            .replace('-', "_");
+        if !free.iter().any(|free| free.name == name) {
+            return Err(Error::Input(format!(
+                "`bounds` {text:?}: {name} is not fitted"
+            )));
+        }
+    }
+    Ok(())
+}

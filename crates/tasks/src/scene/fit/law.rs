@@ -1,0 +1,355 @@
+//! A law that is fitted: its parameters, which are free, where the search begins.
+
+use super::given::{Given, bounds, unknown_bounds};
+use super::options::{FitOptions, USUALLY_FREE};
+use super::plan::{FitPlan, WithProblem};
+use crate::scene::text::TextSlider;
+use std::path::Path;
+use twinslip::error::{Error, Result, did_you_mean};
+use twinslip::fit::{DRIFT, Fit, FreeParameter, Guess, Motion, Problem, Record, Scale, Sliders};
+use twinslip::friction::{AnyLaw, Law};
+use twinslip::model::Slider;
+
+/// c of the paper.
+const RESIDUAL_STRENGTH: f64 = 1e-3;
+/// R of the paper, in L/V*.
+const HEALING_TIME: f64 = 100.0;
+/// b_2 over b and L_2 over L, where the search begins.
+const SECOND: [(f64, f64); 2] = [(0.3, 5.0), (0.3, 0.2)];
+
+/// A law with what is fitted of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LawToFit {
+    /// Its name, or its file.
+    pub name: String,
+    /// State variables.
+    pub states: usize,
+    model: Model,
+    /// The names of all parameters, and their values: where they are fixed, and where one was given for the search to begin with.
+    values: Vec<(&'static str, Option<f64>)>,
+    free: Vec<FreeParameter>,
+    drift: f64,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Model {
+    BuiltIn(Slider),
+    Text(Box<TextSlider>),
+}
+
+struct SteadyBand<'a> {
+    fit: &'a Fit,
+    rates: &'a [f64],
+    reference_rate: f64,
+}
+
+impl WithProblem for SteadyBand<'_> {
+    type Output = Vec<[f64; 3]>;
+    fn call<const N: usize>(&mut self, problem: &Problem<'_, N>) -> Result<Vec<[f64; 3]>> {
+        /// Standard errors on each side of a 95 % band.
+        const SIDE: f64 = 1.96;
+        let errors = self.fit.standard_errors();
+        let of = |&v: &f64| {
+            let (mu, slopes) = problem.steady(&self.fit.variables, v / self.reference_rate)?;
+            let each: Vec<f64> = slopes.iter().zip(&errors).map(|(s, e)| s * e).collect();
+            let pairs = (0..each.len()).flat_map(|i| (0..each.len()).map(move |j| (i, j)));
+            let variance: f64 = pairs
+                .map(|(i, j)| each[i] * self.fit.correlation[(i, j)] * each[j])
+                .sum();
+            let side = SIDE * variance.max(0.0).sqrt();
+            Ok([mu, mu - side, mu + side])
+        };
+        self.rates.iter().map(of).collect()
+    }
+}
+
+impl LawToFit {
+    pub(super) fn new(
+        name: &str,
+        options: &FitOptions,
+        given: &Given,
+        shown: &[Guess],
+        reference_rate: f64,
+    ) -> Result<Self> {
+        let states = options.states;
+        if !(1..=2).contains(&states) {
+            return Err(Error::parameter("states", states, "1 or 2"));
+        }
+        let is_file = name.ends_with(".toml") || name.contains('\n') || Path::new(name).is_file();
+        let (model, has) = if is_file && !AnyLaw::NAMES.contains(&name) {
+            if states == 2 {
+                let what = "`states` 2: laws from files have one state variable";
+                return Err(Error::Input(what.into()));
+            }
+            let slider = TextSlider::read(Path::new(name), reference_rate)?;
+            let has = Sliders::<3>::names(&slider);
+            (Model::Text(Box::new(slider)), has)
+        } else {
+            let slider = Slider::new(name, reference_rate)?;
+            let has = names_of(slider, states);
+            (Model::BuiltIn(slider), has)
+        };
+        let label = match &model {
+            Model::Text(law) if name.contains('\n') => law.name().to_owned(),
+            _ => name.to_owned(),
+        };
+        let all = match &model {
+            Model::BuiltIn(_) => Slider::NAMES.to_vec(),
+            Model::Text(_) => has.clone(),
+        };
+        let all_given = given;
+        let given = given.of(&has, &label, !options.law.contains(','))?;
+        let usual: String = match states {
+            2 => format!("{USUALLY_FREE},evolution_effect_2,slip_length_2"),
+            _ => USUALLY_FREE.into(),
+        };
+        let asked = options.free.clone();
+        let mut names: Vec<String> = Vec::new();
+        for name in asked.as_deref().unwrap_or(&usual).split(',').map(str::trim) {
+            let name = name.replace('-', "_");
+            let known = has.contains(&name.as_str()) || name == DRIFT;
+            let alone = !options.law.contains(',');
+            if !known && asked.is_some() && alone {
+                let mut known = has.clone();
+                known.push(DRIFT);
+                let near = did_you_mean(&name, known.iter().copied());
+                return Err(Error::Input(format!(
+                    "`free` {name}: the law {label} has the parameters {}{near}",
+                    known.join(", ")
+                )));
+            }
+            if known && !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        // What has a value and is not named is fixed. Values of all are no fit, but its start.
+        let is_fixed = |name: &String| given.iter().any(|(own, x)| own == name && x.is_some());
+        if asked.is_none() && !names.iter().all(is_fixed) {
+            names.retain(|name| !is_fixed(name));
+        }
+        let constants = match &model {
+            Model::Text(law) => law.constants(),
+            Model::BuiltIn(_) => &[],
+        };
+        let mut values = Vec::with_capacity(all.len());
+        for name in all {
+            let own = given
+                .iter()
+                .find(|(own, _)| *own == name)
+                .and_then(|(_, x)| *x);
+            let in_file = constants
+                .iter()
+                .find(|(own, _)| own == name)
+                .map(|(_, x)| *x);
+            let value = own.or(in_file);
+            let needed = has.contains(&name)
+                && value.is_none()
+                && !["healing_time", "residual_strength"].contains(&name);
+            if needed && !names.iter().any(|free| free == name) {
+                names.push(name.to_owned());
+            }
+            values.push((name, value));
+        }
+        let mut free = Vec::with_capacity(names.len());
+        for name in names {
+            let scale = scale(&name, constants);
+            let bounds = bounds((options, all_given), &name, scale)?;
+            free.push(FreeParameter {
+                name,
+                scale,
+                bounds,
+            });
+        }
+        if free.is_empty() {
+            return Err(Error::Input("`free`: nothing is free".into()));
+        }
+        unknown_bounds(options, &free)?;
+        let law = LawToFit {
+            name: label,
+            states,
+            model,
+            values,
+            free,
+            drift: options.drift.unwrap_or(0.0),
+        };
+        if law.starts(shown, reference_rate).is_empty() {
+            return Err(Error::Input(format!(
+                "the record shows neither a step nor a hold for the search to begin with: give values of {}, and name by `free` all that is fitted",
+                law.free
+                    .iter()
+                    .filter(|free| law.value(&free.name).is_none() && free.name != DRIFT)
+                    .map(|free| free.name.as_str())
+                    .collect::<Vec<_>>()
+                    .join(", ")
+            )));
+        }
+        Ok(law)
+    }
+
+    /// What is fitted of it.
+    pub fn free(&self) -> &[FreeParameter] {
+        &self.free
+    }
+
+    fn value(&self, name: &str) -> Option<f64> {
+        let known = self.values.iter().find(|(own, _)| *own == name);
+        known.and_then(|(_, value)| *value)
+    }
+
+    /// All parameters that are fixed, in SI; the stiffness as friction per metre.
+    pub fn fixed(&self, reference_rate: f64) -> Vec<(&'static str, f64)> {
+        let has: Vec<&'static str> = match &self.model {
+            Model::BuiltIn(slider) => names_of(*slider, self.states),
+            Model::Text(law) => Sliders::<3>::names(&**law),
+        };
+        let all = self.values.iter().map(|(name, _)| *name);
+        all.zip(self.parameters(reference_rate))
+            .filter(|(name, _)| has.contains(name) && !self.free.iter().any(|f| f.name == *name))
+            .collect()
+    }
+
+    /// The values of all parameters of the slider; where free any, 1 without one.
+    fn parameters(&self, reference_rate: f64) -> Vec<f64> {
+        let length = self.value("slip_length").unwrap_or(1e-5);
+        let default = |name: &str| match name {
+            "healing_time" => HEALING_TIME * length / reference_rate,
+            "residual_strength" => RESIDUAL_STRENGTH,
+            _ => 1.0,
+        };
+        let all = self.values.iter();
+        all.map(|(name, value)| value.unwrap_or_else(|| default(name)))
+            .collect()
+    }
+
+    /// Where the search may begin: at the given values, and at what the record shows, lengths and stiffness varied.
+    pub(super) fn starts(&self, shown: &[Guess], reference_rate: f64) -> Vec<Vec<f64>> {
+        let of =
+            |shown: Option<Guess>, (length, stiffness), second: (f64, f64), use_given: bool| {
+                let each = self.free.iter().map(|free| {
+                    let given = self.value(&free.name).filter(|_| use_given);
+                    let value = given.or_else(|| {
+                        let Guess {
+                            direct_effect,
+                            evolution_effect,
+                            slip_length,
+                            stiffness: steep,
+                            reference_friction,
+                        } = shown?;
+                        Some(match free.name.as_str() {
+                            "direct_effect" => direct_effect,
+                            "evolution_effect" => evolution_effect,
+                            "slip_length" => slip_length * length,
+                            "stiffness" => steep * stiffness,
+                            "reference_friction" => reference_friction,
+                            "evolution_effect_2" => second.0 * evolution_effect,
+                            "slip_length_2" => second.1 * slip_length * length,
+                            _ => return None,
+                        })
+                    });
+                    let value = value.or_else(|| match free.name.as_str() {
+                        DRIFT => Some(self.drift),
+                        "healing_time" => {
+                            let length = shown.map_or(1e-5, |shown| shown.slip_length);
+                            Some(HEALING_TIME * length / reference_rate)
+                        }
+                        "residual_strength" => Some(RESIDUAL_STRENGTH),
+                        // A law from a file has values of its own.
+                        name => self.value(name),
+                    })?;
+                    Some(value.clamp(free.bounds.0, free.bounds.1))
+                });
+                each.collect::<Option<Vec<f64>>>()
+            };
+        let mut starts = Vec::new();
+        let seconds = if self.states == 2 {
+            &SECOND[..]
+        } else {
+            &SECOND[..1]
+        };
+        for &second in seconds {
+            starts.extend(of(shown.first().copied(), (1.0, 1.0), second, true));
+            for &one in shown {
+                for length in [1.0, 0.3, 3.0] {
+                    for stiffness in [1.0, 0.4, 2.5] {
+                        starts.extend(of(Some(one), (length, stiffness), second, false));
+                    }
+                }
+            }
+        }
+        starts.dedup();
+        starts
+    }
+
+    /// The steady friction coefficient at these slip rates in m/s, and the ends of its 95 % band.
+    ///
+    /// # Errors
+    /// Those of [`Problem::steady`].
+    pub fn steady_band(&self, plan: &FitPlan, fit: &Fit, rates: &[f64]) -> Result<Vec<[f64; 3]>> {
+        let mut band = SteadyBand {
+            fit,
+            rates,
+            reference_rate: plan.reference_rate,
+        };
+        self.with_problem(plan, (&plan.motion, &plan.record), &mut band)
+    }
+
+    /// Does something with the problem of this law.
+    ///
+    /// # Errors
+    /// Its own.
+    pub fn with_problem<W: WithProblem>(
+        &self,
+        plan: &FitPlan,
+        (motion, record): (&Motion, &Record),
+        what: &mut W,
+    ) -> Result<W::Output> {
+        let parts = (plan, motion, record);
+        match &self.model {
+            Model::BuiltIn(slider) if self.states == 2 => {
+                what.call(&self.problem::<4>(slider, parts))
+            }
+            Model::BuiltIn(slider) => what.call(&self.problem::<3>(slider, parts)),
+            Model::Text(slider) => what.call(&self.problem::<3>(&**slider, parts)),
+        }
+    }
+
+    fn problem<'a, const N: usize>(
+        &'a self,
+        sliders: &'a dyn Sliders<N>,
+        (plan, motion, record): (&'a FitPlan, &'a Motion, &'a Record),
+    ) -> Problem<'a, N> {
+        Problem {
+            sliders,
+            motion,
+            record,
+            parameters: self.parameters(plan.reference_rate),
+            drift: self.drift,
+            free: self.free.clone(),
+            loss: plan.loss,
+        }
+    }
+}
+
+/// The parameters that a slider with a built-in law has.
+fn names_of(slider: Slider, states: usize) -> Vec<&'static str> {
+    let mut law = slider.law;
+    let [_, _, healing, residual, _] = law.constants().map(|constant| constant.is_some());
+    let has = |name: &&str| match *name {
+        "healing_time" => healing,
+        "residual_strength" => residual,
+        "evolution_effect_2" | "slip_length_2" => states == 2,
+        _ => true,
+    };
+    Slider::NAMES.into_iter().filter(has).collect()
+}
+
+/// Positive ones by their logarithm; b_2, the offset and the slope, and what is zero or negative in a file, by themselves.
+fn scale(name: &str, constants: &[(String, f64)]) -> Scale {
+    let of_file = constants.iter().find(|(own, _)| own == name);
+    let signed = ["reference_friction", "evolution_effect_2", DRIFT].contains(&name);
+    if signed || of_file.is_some_and(|(_, value)| *value <= 0.0) {
+        Scale::Linear
+    } else {
+        Scale::Logarithmic
+    }
+}

@@ -1,0 +1,311 @@
+//! A row of a branch or of a curve, with its columns.
+
+use super::Subject;
+use crate::scene::column::{CellValue, Column};
+use crate::scene::units::{Quantity, Units};
+use nalgebra::Complex;
+use std::f64::consts::TAU;
+use twinslip::bifurcation::equilibria::generic_crossing::BranchCrossing;
+use twinslip::bifurcation::general::{GeneralPoint, GeneralSolution};
+use twinslip::bifurcation::orbits::SpecialOrbit;
+use twinslip::bifurcation::{Criticality, Label};
+use twinslip::equilibrium::{Symmetry, Verdict};
+use twinslip::error::Result;
+use twinslip::field::Vector;
+use twinslip::number::{Uncertain, eigenvector};
+use twinslip::orbit::ParametrisedField;
+
+/// What rows are of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RowKind {
+    /// Of orbits, or of equilibria.
+    pub orbits: bool,
+    /// Of a curve in the plane of two parameters, or of a branch along one.
+    pub curve: bool,
+}
+
+/// What a branch of orbits ends at, that is no homoclinic orbit to a saddle.
+const SADDLE_NODE: &str = "saddle-node on a cycle";
+
+/// A point of a branch or of a curve, as rows and special points show it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GeneralRow {
+    /// The number of the branch or curve.
+    pub number: usize,
+    /// The free parameters, one of a branch, two of a curve, and those that are told though they are held.
+    pub parameters: Vec<Uncertain>,
+    /// What the system tells of the state or the orbit.
+    pub numbers: Vec<f64>,
+    /// The period of an orbit, or of the oscillation at a Hopf point.
+    pub period: Option<Uncertain>,
+    /// The real parts of the leading eigenvalues, or ln |mu| of the leading multipliers.
+    pub exponents: [Option<f64>; 2],
+    /// Of interfaces in clusters what a split of each that can split grows by.
+    pub within: Vec<f64>,
+    /// The angle of the multipliers of a torus bifurcation, over pi.
+    pub angle_over_pi: Option<f64>,
+    /// How branches of equilibria cross at a branch point.
+    pub crossing: Option<BranchCrossing>,
+    /// At a branch point or Hopf point of equilibria, how many eigenvalues, or pairs, are on the imaginary axis together.
+    pub multiplicity: Option<usize>,
+    /// Where the period grows without bound, whether that is at a saddle-node on the cycle.
+    pub saddle_node: bool,
+    /// To which side a bifurcation goes.
+    pub criticality: Option<Criticality>,
+    /// The normal form's coefficient.
+    pub coefficient: Option<f64>,
+    /// It may be off by this, where that is known.
+    pub coefficient_uncertainty: Option<f64>,
+    /// Stability, of branches.
+    pub verdict: Option<Verdict>,
+    /// What is special here.
+    pub label: Option<Label>,
+    /// Of equal interfaces, whether both move alike there: a point where they do not stands for its mirror image too.
+    pub symmetry: Option<Symmetry>,
+    /// What else is to be said.
+    pub note: Option<String>,
+    /// Of a special orbit that was just found, what is needed to compute it once more.
+    pub orbit: Option<SpecialOrbit>,
+}
+
+impl GeneralRow {
+    /// The row of a point.
+    ///
+    /// # Errors
+    /// As of [`Subject::told`].
+    pub fn of(
+        subject: &dyn Subject,
+        family: &dyn ParametrisedField,
+        (kind, names): (RowKind, &[(&'static str, Quantity)]),
+        point: GeneralPoint,
+    ) -> Result<Self> {
+        let numbers = subject.told(family, &point)?;
+        let time = subject.unit_of_time();
+        // |q|^2 of the eigenvector at a Hopf point, where it is 1 in the units in which it is followed.
+        let square = oscillation(family, &point).map_or(1.0, |parts| {
+            parts.map(|part| subject.length(&part).powi(2)).iter().sum()
+        });
+        let exponents: Vec<f64> = match &point.solution {
+            GeneralSolution::Equilibrium { eigenvalues, .. } => {
+                eigenvalues.iter().map(|z| z.re / time).collect()
+            }
+            GeneralSolution::Orbit {
+                log_multipliers, ..
+            } => log_multipliers.clone(),
+        };
+        let free = if kind.curve { 2 } else { 1 };
+        let mut parameters = point.parameters[..free].to_vec();
+        for (name, _) in &names[free..] {
+            parameters.push(Uncertain::new(subject.value(name)?, 0.0));
+        }
+        let symmetry = subject.has_equal_parts();
+        Ok(GeneralRow {
+            symmetry: symmetry.then(|| point.solution.symmetry()),
+            number: point.number,
+            parameters,
+            numbers,
+            period: point
+                .period
+                .map(|period| Uncertain::new(period.value * time, period.uncertainty * time)),
+            exponents: [0, 1].map(|i| exponents.get(i).copied().filter(|x| x.is_finite())),
+            within: point.within.iter().map(|one| one.ln_abs.value).collect(),
+            angle_over_pi: point.angle_over_pi,
+            crossing: point.crossing,
+            multiplicity: point.multiplicity,
+            saddle_node: point.saddle_node,
+            criticality: point.criticality,
+            coefficient: point.coefficient.map(|x| x / square),
+            coefficient_uncertainty: point.coefficient_uncertainty.map(|x| x / square),
+            verdict: (!kind.curve).then(|| point.verdict()),
+            label: point.label,
+            note: point.note,
+            orbit: point.orbit,
+        })
+    }
+
+    /// What its label means; where a cluster of more than two splits that is no pitchfork.
+    pub fn meaning(&self) -> Option<&'static str> {
+        match self.label? {
+            Label::Bp if !self.within.is_empty() => Some("branch point"),
+            Label::Bp => Some(self.crossing.map_or("branch point", BranchCrossing::name)),
+            Label::Hom if self.saddle_node => Some(SADDLE_NODE),
+            label => Some(label.meaning()),
+        }
+    }
+
+    /// The columns of rows.
+    pub fn columns(
+        subject: &dyn Subject,
+        kind: RowKind,
+        names: &[(&'static str, Quantity)],
+    ) -> Vec<Column<Self>> {
+        type Row = GeneralRow;
+        use Quantity::{Growth, Number, Time};
+        let mut columns: Vec<Column<Row>> = Vec::new();
+        for (i, &(name, quantity)) in names.iter().enumerate() {
+            columns.push(if kind.curve {
+                Column::uncertain(name, quantity, move |row: &Row| row.parameters[i].into())
+            } else {
+                Column::new(name, quantity, move |row: &Row| {
+                    row.parameters[i].value.into()
+                })
+            });
+        }
+        let numbers = subject.numbers(kind).into_iter().enumerate();
+        columns.extend(numbers.map(|(i, (name, quantity))| {
+            Column::new(name, quantity, move |row: &Row| row.numbers[i].into())
+        }));
+        let period = Column::new("period", Time, |row: &Row| {
+            row.period.map(|period| period.value).into()
+        });
+        if kind.curve || kind.orbits {
+            columns.push(period);
+        }
+        if kind.curve {
+            columns.push(Column::new("angle_over_pi", Number, |row: &Row| {
+                row.angle_over_pi.into()
+            }));
+            columns.push(criticality());
+        } else {
+            let exponent = if kind.orbits { Number } else { Growth };
+            for i in 0..2 {
+                let name = format!("ln_abs_multiplier_{}", i + 1);
+                let entry = move |row: &Row| row.exponents[i].into();
+                columns.push(Column::new(name, exponent, entry));
+            }
+            for (i, cluster) in subject.clusters().into_iter().enumerate() {
+                let known = move |row: &Row| row.within.get(i).copied().filter(|x| x.is_finite());
+                let entry = move |row: &Row| known(row).into();
+                columns.push(Column::new(format!("within_{cluster}"), exponent, entry));
+            }
+            columns.push(Column::new("verdict", Number, |row: &Row| {
+                row.verdict.map(Verdict::name).into()
+            }));
+        }
+        columns.push(Column::new("label", Number, |row: &Row| {
+            row.label.map(Label::name).into()
+        }));
+        let whole = if kind.curve { "curve" } else { "branch" };
+        columns.push(Column::new(whole, Number, |row: &Row| row.number.into()));
+        columns.extend(subject.has_equal_parts().then(Self::symmetry_column));
+        columns
+    }
+
+    fn symmetry_column() -> Column<Self> {
+        Column::new("symmetry", Quantity::Number, |row: &Self| {
+            row.symmetry.map(Symmetry::name).into()
+        })
+    }
+
+    /// The columns of special points.
+    pub fn special_columns(
+        subject: &dyn Subject,
+        names: &[(&'static str, Quantity)],
+    ) -> Vec<Column<Self>> {
+        type Row = GeneralRow;
+        use Quantity::{Number, Time};
+        let mut columns = vec![
+            Column::new("label", Number, |row: &Row| {
+                row.label.map(Label::name).into()
+            }),
+            Column::new("name", Number, |row: &Row| row.meaning().into()),
+            Column::new("branch", Number, |row: &Row| row.number.into()),
+        ];
+        columns.extend(subject.has_equal_parts().then(Self::symmetry_column));
+        for (i, &(name, quantity)) in names.iter().enumerate() {
+            let entry = move |row: &Row| row.parameters[i].into();
+            columns.push(Column::uncertain(name, quantity, entry));
+        }
+        columns.extend([
+            Column::uncertain("period", Time, |row: &Row| row.period.into()),
+            criticality(),
+            Column::new("coefficient", Number, |row: &Row| row.coefficient.into()),
+            Column::new("note", Number, |row: &Row| {
+                // A row is a line, whatever the reason says.
+                CellValue::Word(row.note.as_ref().map(|note| note.replace('\n', " ")))
+            }),
+            Column::new("coefficient_uncertainty", Number, |row: &Row| {
+                row.coefficient_uncertainty.into()
+            }),
+            Column::new("multiplicity", Number, |row: &Row| {
+                let count = row.multiplicity;
+                count.map_or(CellValue::Number(None), CellValue::Count)
+            })
+            .not_in_table(),
+        ]);
+        columns
+    }
+
+    /// From the cells of a CSV in the user's units, by the columns that it has.
+    pub fn read(
+        cell: &dyn Fn(&str) -> String,
+        units: &Units,
+        names: &[(&'static str, Quantity)],
+        numbers: &[(String, Quantity)],
+    ) -> Option<Self> {
+        let number = |name: &str| cell(name).parse::<f64>().ok();
+        let inward = |name: &str, quantity| number(name).map(|x| units.inward(quantity, x));
+        let uncertain = |name: &str, quantity| {
+            let value = inward(name, quantity)?;
+            let off = number(&format!("{name}_uncertainty"));
+            let off = off.map_or(f64::INFINITY, |off| off / units.factor(quantity));
+            Some(Uncertain::new(value, off))
+        };
+        let parameters = names
+            .iter()
+            .map(|(name, quantity)| uncertain(name, *quantity));
+        let sides = [
+            Criticality::Supercritical,
+            Criticality::Subcritical,
+            Criticality::Undecided,
+        ];
+        let verdicts = [Verdict::Stable, Verdict::Unstable, Verdict::Undecided];
+        let of_whole = [cell("branch"), cell("curve")];
+        let numbers = numbers.iter();
+        Some(GeneralRow {
+            number: of_whole.iter().find_map(|word| word.parse().ok())?,
+            parameters: parameters.collect::<Option<_>>()?,
+            numbers: numbers
+                .map(|(name, quantity)| inward(name, *quantity).unwrap_or(f64::NAN))
+                .collect(),
+            period: uncertain("period", Quantity::Time),
+            // Not shown but in the line itself, which is kept as it stands.
+            exponents: [None; 2],
+            within: Vec::new(),
+            angle_over_pi: number("angle_over_pi"),
+            crossing: BranchCrossing::ALL
+                .into_iter()
+                .find(|crossing| crossing.name() == cell("name")),
+            multiplicity: cell("multiplicity").parse().ok(),
+            saddle_node: cell("name") == SADDLE_NODE,
+            criticality: sides
+                .into_iter()
+                .find(|side| side.name() == cell("criticality")),
+            coefficient: number("coefficient"),
+            coefficient_uncertainty: number("coefficient_uncertainty"),
+            verdict: verdicts
+                .into_iter()
+                .find(|verdict| verdict.name() == cell("verdict")),
+            label: Label::named(&cell("label")),
+            symmetry: Symmetry::named(&cell("symmetry")),
+            note: Some(cell("note")).filter(|note| !note.is_empty()),
+            orbit: None,
+        })
+    }
+}
+
+/// The real and imaginary parts of the eigenvector q, with <q, q> = 1, of the oscillation at a Hopf point.
+fn oscillation(family: &dyn ParametrisedField, point: &GeneralPoint) -> Option<[Vector; 2]> {
+    let GeneralSolution::Equilibrium { state, .. } = &point.solution else {
+        return None;
+    };
+    let frequency = Complex::new(0.0, TAU / point.period?.value);
+    let q = eigenvector(&family.field(point.at).jacobian(state), frequency)?;
+    Some([q.map(|z| z.re), q.map(|z| z.im)])
+}
+
+fn criticality() -> Column<GeneralRow> {
+    Column::new("criticality", Quantity::Number, |row: &GeneralRow| {
+        row.criticality.map(Criticality::name).into()
+    })
+}

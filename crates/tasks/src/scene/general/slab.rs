@@ -1,0 +1,419 @@
+//! One interface or two, equal or not, to be continued in any of their parameters.
+
+use super::{RowKind, Subject};
+use crate::scene::following;
+use crate::scene::plan::{self, Point};
+use crate::scene::system::{Described, System};
+use crate::scene::units::{Quantity, Units};
+use serde_json::{Map, Value};
+use twinslip::bifurcation::general::{GeneralPoint, GeneralSolution};
+use twinslip::bifurcation::orbits::embedded;
+use twinslip::equilibrium::{Symmetry, unequal_steady_states};
+use twinslip::error::{Error, Result};
+use twinslip::field::{Matrix, Parametrised, State, Vector};
+use twinslip::friction::{AnyLaw, Law, Parameters, UnequalLaws, positive};
+use twinslip::integrate::AnyField;
+use twinslip::model::{AlikeInterfaces, Driven, Loading, UnequalInterfaces};
+use twinslip::orbit::{
+    ContinuationPoint, Coordinate, FoundOrbit, InitialGuess, InterfaceSystem, OrbitAccuracy,
+    OverInterfaces, OverLogarithms, ParametrisedField, Profile, Query, ShootingNodes, find,
+    find_either, find_unequal, profile_of,
+};
+
+/// Interfaces with V_H and K.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SlabSubject {
+    /// What slides.
+    pub system: System,
+    /// The same; what varies has any value.
+    interfaces: UnequalInterfaces,
+    /// Whether both are equal, whatever varies.
+    equal: bool,
+    /// A point at or near an orbit and the period, roughly.
+    orbit: Option<(Point, Option<f64>)>,
+}
+
+impl SlabSubject {
+    /// Interfaces of which these parameters vary.
+    ///
+    /// # Errors
+    /// [`Error::Input`] in SI for a parameter that sets the units.
+    pub fn new(system: System, free: &[&str]) -> Result<Self> {
+        let laws = match system.unequal {
+            Some(laws) => laws,
+            None => UnequalLaws::new(system.law.name(), system.constants, system.law.damping())?,
+        };
+        // A law without damping has no parameter of this name.
+        let laws = if free.contains(&"damping") && laws.damping() == 0.0 {
+            UnequalLaws::new(laws.name(), *laws.constants(), 1.0)?
+        } else {
+            laws
+        };
+        if system.units.si()
+            && let Some(name) = free.iter().find(|name| SETS_UNITS.contains(name))
+        {
+            return Err(Error::Input(format!(
+                "`{name}` sets the unit of stress in SI, so that all else would change with it; leave `si` out"
+            )));
+        }
+        let loading = Loading {
+            driving: system.driving.unwrap_or(1.0),
+            stiffness: system.stiffness.unwrap_or(1.0),
+        };
+        Ok(SlabSubject {
+            interfaces: UnequalInterfaces { laws, loading },
+            equal: system.interfaces == 2
+                && system.unequal.is_none()
+                && free.iter().all(|name| !of_one(name)),
+            system,
+            orbit: None,
+        })
+    }
+
+    /// The same with a point at or near an orbit, where branches of orbits begin.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a text that is no point, and for a period without one.
+    pub fn beginning(self, start: Option<&str>, period: Option<f64>) -> Result<Self> {
+        let inward = |t| {
+            let period = positive("period-guess", t)?;
+            Ok(self.units().inward(Quantity::Time, period))
+        };
+        let period = period.map(inward).transpose()?;
+        let orbit = match start {
+            Some(text) => {
+                let point = plan::start(text, &self.system, &self.interfaces.loading)?;
+                Some((point, period))
+            }
+            None if period.is_some() => {
+                let what = "`period_guess` needs a `start` near the orbit";
+                return Err(Error::Input(what.into()));
+            }
+            None => None,
+        };
+        Ok(SlabSubject { orbit, ..self })
+    }
+
+    /// Equal interfaces, with the damping that may vary.
+    fn slab(&self, interfaces: &UnequalInterfaces) -> Result<InterfaceSystem> {
+        let damping = interfaces.laws.damping();
+        let constants = interfaces.laws.constants()[0];
+        let parameters = Parameters::new(
+            constants.direct_effect,
+            constants.evolution_effect,
+            constants.reference_friction,
+            constants.healing_time,
+            constants.residual_strength,
+        )?;
+        Ok(InterfaceSystem {
+            law: AnyLaw::named(interfaces.laws.name(), parameters.damped(damping)?)?,
+            interfaces: self.system.interfaces,
+            loading: interfaces.loading,
+        })
+    }
+
+    /// There is one.
+    fn is_single(&self) -> bool {
+        self.system.interfaces == 1
+    }
+
+    fn alike_interfaces(&self) -> AlikeInterfaces {
+        AlikeInterfaces {
+            interfaces: self.interfaces,
+            count: self.system.interfaces,
+        }
+    }
+
+    /// What rows tell of a profile.
+    fn shown(&self, profile: &Profile) -> Vec<f64> {
+        let (least, most) = profile.stress_range;
+        let shown = self.system.interfaces;
+        let pairs = [profile.state, profile.slip_rate].into_iter();
+        let rest = pairs.flat_map(|pair| pair.into_iter().take(shown));
+        let stress = [profile.mean_stress, least, most].into_iter();
+        stress.chain(rest).collect()
+    }
+
+    /// Over these parameters.
+    fn over(&self, names: [&str; 2]) -> Result<OverInterfaces> {
+        match self.is_single() {
+            true => OverInterfaces::alike(&self.alike_interfaces(), names),
+            false => OverInterfaces::new(&self.interfaces, names),
+        }
+    }
+
+    fn at(&self, values: &[(&str, f64)]) -> Result<UnequalInterfaces> {
+        let mut interfaces = self.interfaces;
+        for &(name, value) in values {
+            interfaces = interfaces.with(name, value)?;
+        }
+        Ok(interfaces)
+    }
+}
+
+/// Parameters that set the scales by which K and all stresses are dimensionless.
+const SETS_UNITS: [&str; 2] = ["direct_effect", "direct_effect_1"];
+
+/// A parameter that is held where this one varies.
+fn other_than(name: &str) -> &'static str {
+    if name == "driving" {
+        "stiffness"
+    } else {
+        "driving"
+    }
+}
+
+/// Whether a parameter is of one of the interfaces.
+fn of_one(name: &str) -> bool {
+    name.ends_with("_1") || name.ends_with("_2")
+}
+
+fn quantity(name: &str) -> Quantity {
+    match name {
+        "driving" => Quantity::SlipRate,
+        "stiffness" => Quantity::Stiffness,
+        "damping" => Quantity::Damping,
+        "slip_length_2" => Quantity::Length,
+        "normal_stress_2" => Quantity::NormalStress,
+        _ if name.starts_with("healing_time") => Quantity::Time,
+        _ => Quantity::Number,
+    }
+}
+
+impl Described for SlabSubject {
+    fn echo(&self) -> &Map<String, Value> {
+        self.system.echo()
+    }
+
+    fn units(&self) -> &Units {
+        self.system.units()
+    }
+}
+
+impl Subject for SlabSubject {
+    fn parameters(&self) -> Vec<(&'static str, Quantity)> {
+        let alike = self.alike_interfaces();
+        let names = match self.is_single() {
+            true => alike.names(),
+            false => self.interfaces.names(),
+        };
+        names.iter().map(|&name| (name, quantity(name))).collect()
+    }
+
+    fn value(&self, name: &str) -> Result<f64> {
+        match name {
+            "driving" => self.system.needed_driving(),
+            "stiffness" => self.system.needed_stiffness(),
+            _ => self.interfaces.parameter(name),
+        }
+    }
+
+    fn family<'s>(
+        &'s self,
+        names: &[&str],
+        _: [Coordinate; 2],
+    ) -> Result<Box<dyn ParametrisedField + 's>> {
+        for held in ["driving", "stiffness"] {
+            if !names.contains(&held) {
+                self.value(held)?;
+            }
+        }
+        Ok(match *names {
+            [first, second] => Box::new(self.over([first, second])?),
+            [only] => {
+                let other = other_than(only);
+                Box::new(Held {
+                    at: self.value(other)?.ln(),
+                    family: Box::new(self.over([only, other])?),
+                })
+            }
+            _ => return Err(Error::Input("one parameter may vary, or two".into())),
+        })
+    }
+
+    fn alike(&self, names: &[&str]) -> Option<Box<dyn ParametrisedField + '_>> {
+        if !self.equal {
+            return None;
+        }
+        let slab = self.slab(&self.interfaces).ok()?;
+        let (names, held) = match *names {
+            [first, second] => ([first, second], None),
+            [only] => {
+                let other = other_than(only);
+                ([only, other], Some(self.value(other).ok()?.ln()))
+            }
+            _ => return None,
+        };
+        // Compiled for the constants that laws have.
+        let family: Box<dyn ParametrisedField> =
+            match OverLogarithms::new(slab, Symmetry::Symmetric, names) {
+                Ok(over) => Box::new(over),
+                Err(_) => Box::new(OverInterfaces::alike(&self.alike_interfaces(), names).ok()?),
+            };
+        Some(match held {
+            Some(at) => Box::new(Held { at, family }),
+            None => family,
+        })
+    }
+
+    fn equilibria(&self, values: &[(&str, f64)]) -> Result<Vec<Vector>> {
+        let interfaces = self.at(values)?;
+        if self.is_single() {
+            let slab = self.slab(&interfaces)?;
+            let state = vec![slab.steady_stress(), slab.steady_log_state()];
+            return Ok(vec![Vector::from_vec(state)]);
+        }
+        let found = unequal_steady_states(&interfaces.laws, interfaces.loading.driving)?;
+        let state = |one: &twinslip::equilibrium::Equilibrium| {
+            Vector::from_vec(vec![one.stress.value, one.log_state[0], one.log_state[1]])
+        };
+        Ok(found.equilibria.iter().map(state).collect())
+    }
+
+    fn orbit(&self, values: &[(&str, f64)]) -> Result<Option<ContinuationPoint>> {
+        let Some((start, period)) = self.orbit else {
+            return Ok(None);
+        };
+        let begin = InitialGuess::At { start, period };
+        let accuracy = OrbitAccuracy::unchecked();
+        let interfaces = self.at(values)?;
+        let found = if self.is_single() {
+            let query = Query {
+                symmetry: Symmetry::Symmetric,
+                begin,
+            };
+            find(&self.slab(&interfaces)?, &query, &accuracy)?
+        } else {
+            find_unequal(&interfaces, begin, &accuracy)?
+        };
+        Ok(Some(found.orbit.beginning()))
+    }
+
+    fn orbits(&self, values: &[(&str, f64)]) -> Vec<ContinuationPoint> {
+        let search = || -> Result<_> {
+            let interfaces = self.at(values)?;
+            let accuracy = OrbitAccuracy::unchecked();
+            match self.equal || self.is_single() {
+                true => find_either(&self.slab(&interfaces)?, &accuracy),
+                false => find_unequal(&interfaces, InitialGuess::Anywhere, &accuracy),
+            }
+        };
+        let found = search().map_or(Vec::new(), FoundOrbit::beginnings);
+        let plane = |orbit: &ContinuationPoint| orbit.shooting.dimension() == 2;
+        let whole = |orbit| match self.equal && plane(&orbit) {
+            true => embedded(&orbit),
+            false => orbit,
+        };
+        found.into_iter().map(whole).collect()
+    }
+
+    fn coordinate(&self, name: &str, ends: [f64; 2]) -> Result<Coordinate> {
+        for end in ends {
+            positive(name, end)?;
+        }
+        Ok(Coordinate::Logarithm)
+    }
+
+    fn has_equal_parts(&self) -> bool {
+        self.equal
+    }
+
+    fn default_range(&self, name: &str) -> Option<(f64, f64)> {
+        let (from, to) = following::loading_range(name)?;
+        let outward = |x| self.units().outward(quantity(name), x);
+        Some((outward(from), outward(to)))
+    }
+
+    fn always_told(&self) -> Vec<(&'static str, Quantity)> {
+        let names = ["driving", "stiffness"];
+        names.map(|name| (name, quantity(name))).to_vec()
+    }
+
+    fn numbers(&self, _: RowKind) -> Vec<(String, Quantity)> {
+        use Quantity::{SlipRate, State, Stress};
+        let all = [
+            ("stress", Stress),
+            ("stress_min", Stress),
+            ("stress_max", Stress),
+            ("state_1", State),
+            ("state_2", State),
+            ("slip_rate_1", SlipRate),
+            ("slip_rate_2", SlipRate),
+        ];
+        all.into_iter()
+            .filter(|(name, _)| !(self.is_single() && name.ends_with("_2")))
+            .map(|(name, quantity)| (name.to_owned(), quantity))
+            .collect()
+    }
+
+    fn told(&self, family: &dyn ParametrisedField, point: &GeneralPoint) -> Result<Vec<f64>> {
+        let values = family.parameters(point.at);
+        let names = self.parameters();
+        let places = family.plane();
+        let there = [0, 1].map(|i| (names[places[i]].0, values[i]));
+        let interfaces = self.at(&there)?;
+        let profile = match &point.solution {
+            GeneralSolution::Equilibrium { state, .. } => {
+                let y = State::<3>::new(state[0], state[1], state[state.len() - 1]);
+                Profile {
+                    mean_stress: y[0],
+                    stress_range: (y[0], y[0]),
+                    state: [y[1].exp(), y[2].exp()],
+                    slip_rate: interfaces.slip_rates(&y),
+                }
+            }
+            GeneralSolution::Orbit { shooting, .. } => {
+                let rates = |y: &State<3>| interfaces.slip_rates(y);
+                if self.is_single() {
+                    let field = family.field(point.at);
+                    return Ok(self.shown(&profile_of(&field, &rates, shooting)?));
+                }
+                let field = AnyField::of::<3>(&interfaces);
+                // In the states in which both move alike there is one state for both.
+                let whole = |x: &Vector| Vector::from_vec(vec![x[0], x[1], x[x.len() - 1]]);
+                let shooting = ShootingNodes {
+                    nodes: shooting.nodes.iter().map(whole).collect(),
+                    durations: shooting.durations.clone(),
+                };
+                profile_of(&field, &rates, &shooting)?
+            }
+        };
+        Ok(self.shown(&profile))
+    }
+}
+
+/// A family of which the second coordinate is held.
+struct Held<'f> {
+    family: Box<dyn ParametrisedField + 'f>,
+    at: f64,
+}
+
+impl ParametrisedField for Held<'_> {
+    fn dimension(&self) -> usize {
+        self.family.dimension()
+    }
+
+    fn plane(&self) -> [usize; 2] {
+        self.family.plane()
+    }
+
+    fn field(&self, at: [f64; 2]) -> AnyField<'_> {
+        self.family.field([at[0], self.at])
+    }
+
+    fn parameters(&self, at: [f64; 2]) -> [f64; 2] {
+        self.family.parameters([at[0], self.at])
+    }
+
+    fn scale(&self, at: [f64; 2]) -> [f64; 2] {
+        [self.family.scale(at)[0], 0.0]
+    }
+
+    fn normal(&self, x: &Vector, flow: Vector) -> Vector {
+        self.family.normal(x, flow)
+    }
+
+    fn across(&self, x: &Vector, flow: &Vector) -> Matrix {
+        self.family.across(x, flow)
+    }
+}

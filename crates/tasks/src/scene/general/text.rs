@@ -1,0 +1,298 @@
+//! A system of one's own, to be continued in any of its parameters.
+
+use super::{RowKind, Subject};
+use crate::scene::following;
+use crate::scene::system::Described;
+use crate::scene::text::{SearchPlace, TextEquilibriaPlan, TextModel, TextSlab, orbit_start};
+use crate::scene::units::{Quantity, Units};
+use serde_json::{Map, Value};
+use std::borrow::Cow;
+use twinslip::bifurcation::general::{GeneralPoint, GeneralSolution, StateRange};
+use twinslip::equilibrium::Symmetry;
+use twinslip::error::{Error, Result};
+use twinslip::field::Vector;
+use twinslip::friction::positive;
+use twinslip::integrate::{AnyField, Choice, MotionUnits, Tolerances};
+use twinslip::model::TextSystem;
+use twinslip::number::Interval;
+use twinslip::orbit::{
+    AlongArcs, ContinuationPoint, Coordinate, FoundOrbit, OrbitAccuracy, OverText,
+    ParametrisedField, WithinCluster, find_from, ranges,
+};
+
+/// A system of one's own, and where its equilibria and orbits are looked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TextSubject {
+    /// The system.
+    pub model: TextModel,
+    /// The units in which it is followed.
+    units: MotionUnits,
+    /// The equations in these.
+    system: TextSystem,
+    /// Where equilibria are looked for; of interfaces, where nothing is said, among all their steady states.
+    pub place: Option<SearchPlace>,
+    /// A point at or near an orbit and the period, roughly.
+    pub orbit: Option<(Vector, Option<f64>)>,
+}
+
+impl Described for TextSubject {
+    fn echo(&self) -> &Map<String, Value> {
+        self.model.echo()
+    }
+
+    fn units(&self) -> &Units {
+        self.model.units()
+    }
+}
+
+impl TextSubject {
+    /// Of a system with where its equilibria and orbits are looked for: in a box or near the file's start, and near a point
+    /// with a rough period.
+    ///
+    /// # Errors
+    /// Those of the box and of the start.
+    pub fn new(
+        model: TextModel,
+        within: Option<&str>,
+        start: Option<&str>,
+        period: Option<f64>,
+        orbits: bool,
+    ) -> Result<Self> {
+        let period = period
+            .map(|period| positive("period-guess", period))
+            .transpose()?;
+        let orbit = match start.filter(|_| orbits) {
+            Some(start) => Some((model.start(Some(start))?, period)),
+            None if period.is_some() => {
+                let what = "`period_guess` needs a `start` near the orbit";
+                return Err(Error::Input(what.into()));
+            }
+            None => None,
+        };
+        let near = start.filter(|_| !orbits);
+        if within.is_some() && near.is_some() {
+            return Err(Error::Input(
+                "`start` and `box` both say where equilibria are looked for; give one of them"
+                    .into(),
+            ));
+        }
+        let place = match (within, near) {
+            (Some(text), _) => Some(SearchPlace::within(text, &model)?),
+            (None, None) if model.slab.is_some() => None,
+            // Where an orbit is given none is needed.
+            (None, None) if orbit.is_some() && model.start(None).is_err() => {
+                Some(SearchPlace::Near(model.start(start)?))
+            }
+            (None, near) => Some(SearchPlace::Near(model.start(near)?)),
+        };
+        let start = match (&orbit, &place) {
+            (Some((start, _)), _) | (None, Some(SearchPlace::Near(start))) => Some(start.clone()),
+            _ => model.start(None).ok(),
+        };
+        let system = &model.system;
+        let units = match (start, &place) {
+            (Some(start), _) => model.motion_units(&start)?,
+            (None, Some(SearchPlace::Within(ranges))) => model.motion_units_within(ranges)?,
+            (None, _) => MotionUnits::given(system.states().len()),
+        };
+        Ok(TextSubject {
+            system: units.inward_system(system)?,
+            units,
+            model,
+            place,
+            orbit,
+        })
+    }
+
+    fn at(&self, values: &[(&str, f64)]) -> Result<TextSystem> {
+        Self::set(&self.model.system, values)
+    }
+
+    fn set(system: &TextSystem, values: &[(&str, f64)]) -> Result<TextSystem> {
+        let mut system = system.clone();
+        for &(name, value) in values {
+            system.set(name, value)?;
+        }
+        Ok(system)
+    }
+}
+
+impl Subject for TextSubject {
+    fn parameters(&self) -> Vec<(&'static str, Quantity)> {
+        let names = self.model.system.parameter_names().iter();
+        names.map(|name| (*name, Quantity::Number)).collect()
+    }
+
+    fn value(&self, name: &str) -> Result<f64> {
+        let system = &self.model.system;
+        Ok(system.parameters()[twinslip::field::place(system.parameter_names(), name)?])
+    }
+
+    fn family<'s>(
+        &'s self,
+        names: &[&str],
+        coordinates: [Coordinate; 2],
+    ) -> Result<Box<dyn ParametrisedField + 's>> {
+        let system = &self.system;
+        Ok(match *names {
+            [first, second] => Box::new(OverText::two(system, [first, second], coordinates)?),
+            [only] => Box::new(OverText::one(system, only, coordinates[0])?),
+            _ => return Err(Error::Input("one parameter may vary, or two".into())),
+        })
+    }
+
+    fn equilibria(&self, values: &[(&str, f64)]) -> Result<Vec<Vector>> {
+        let system = self.at(values)?;
+        let model = self.model.with(system);
+        let place = match &self.place {
+            Some(place) => place.clone(),
+            None => SearchPlace::Within(model.steady_box()?),
+        };
+        let plan = TextEquilibriaPlan { place, model };
+        let found = match plan.solve() {
+            Ok(found) => found.equilibria,
+            // There need not be one near the start for each value.
+            Err(Error::NotConverged { .. }) => Vec::new(),
+            Err(error) => return Err(error),
+        };
+        let state = found.iter().map(|one| one.state.iter().map(|x| x.value));
+        Ok(state
+            .map(|state| self.units.inward(&Vector::from_vec(state.collect())))
+            .collect())
+    }
+
+    fn bounds(&self) -> Vec<StateRange> {
+        let Some(SearchPlace::Within(ranges)) = &self.place else {
+            return Vec::new();
+        };
+        let states = self.model.system.states().iter();
+        let all = states.zip(ranges).zip(&self.units.sizes);
+        let bound = |((name, range), size): ((&&str, &Interval), &f64)| {
+            let said = |x: f64, side: &str| {
+                format!("the branch leaves the box at {name} = {x}, its {side} bound")
+            };
+            StateRange {
+                range: (range.lo() / size, range.hi() / size),
+                said: [said(range.lo(), "lower"), said(range.hi(), "upper")],
+            }
+        };
+        all.map(bound).collect()
+    }
+
+    fn orbit(&self, values: &[(&str, f64)]) -> Result<Option<ContinuationPoint>> {
+        let Some((start, period)) = &self.orbit else {
+            return Ok(None);
+        };
+        let field = AnyField::of_text(Cow::Owned(Self::set(&self.system, values)?))?;
+        let (start, period) = (
+            self.units.inward(start),
+            period.map(|t| t / self.units.time),
+        );
+        let found = find_from(&field, &start, period, &OrbitAccuracy::unchecked())?;
+        Ok(Some(found.orbit.beginning()))
+    }
+
+    fn orbits(&self, values: &[(&str, f64)]) -> Vec<ContinuationPoint> {
+        let search = || -> Result<_> {
+            let model = self.model.with(self.at(values)?);
+            let start = orbit_start(None, Symmetry::Symmetric, &model)?;
+            let field = AnyField::of_text(Cow::Owned(Self::set(&self.system, values)?))?;
+            let start = self.units.inward(&start);
+            find_from(&field, &start, None, &OrbitAccuracy::unchecked())
+        };
+        search().map_or(Vec::new(), FoundOrbit::beginnings)
+    }
+
+    fn coordinate(&self, _: &str, ends: [f64; 2]) -> Result<Coordinate> {
+        Ok(Coordinate::of(&ends))
+    }
+
+    fn default_range(&self, name: &str) -> Option<(f64, f64)> {
+        // Of interfaces as of those that are built in.
+        self.model.slab.as_ref()?;
+        following::loading_range(name)
+    }
+
+    fn always_told(&self) -> Vec<(&'static str, Quantity)> {
+        Vec::new()
+    }
+
+    fn interchangeable(&self) -> Vec<Vec<usize>> {
+        let slab = self.model.slab.as_ref();
+        slab.map_or(Vec::new(), TextSlab::interchangeable)
+    }
+
+    fn clusters(&self) -> Vec<usize> {
+        let counts = self.model.slab.iter().flat_map(|slab| slab.clusters());
+        let split = counts.zip(1..).filter(|(count, _)| **count > 1);
+        split.map(|(_, cluster)| cluster).collect()
+    }
+
+    fn within(
+        &self,
+        family: &dyn ParametrisedField,
+        point: &GeneralPoint,
+        sharp: bool,
+    ) -> Result<Vec<WithinCluster>> {
+        /// Of rows: tolerance of the flow, and what their nodes may be off.
+        const ROUGH: (f64, f64) = (1e-8, 1e-6);
+        const FINE: (f64, f64) = (1e-15, 1e-13);
+        let Some(slab) = &self.model.slab else {
+            return Ok(Vec::new());
+        };
+        let names = self.model.system.parameter_names();
+        let places = family.plane();
+        let values = family.parameters(point.at);
+        let mut system = self.model.system.clone();
+        for (place, value) in places.into_iter().zip(values).rev() {
+            system.set(names[place], value)?;
+        }
+        match &point.solution {
+            GeneralSolution::Equilibrium { state, .. } => Ok(slab.within_state(&system, state)),
+            GeneralSolution::Orbit { shooting, .. } => {
+                let (tolerance, uncertainty) = if sharp { FINE } else { ROUGH };
+                let along = AlongArcs {
+                    method: Choice::Taylor,
+                    tolerances: Tolerances::equal(tolerance)?,
+                    uncertainty,
+                };
+                slab.within(&system, shooting, along)
+            }
+        }
+    }
+
+    fn numbers(&self, kind: RowKind) -> Vec<(String, Quantity)> {
+        let states = self.model.system.states().iter();
+        let named = |name: String| (name, Quantity::Number);
+        match kind.orbits {
+            true => states
+                .flat_map(|name| [format!("{name}_min"), format!("{name}_max")])
+                .map(named)
+                .collect(),
+            false => states.map(|name| named((*name).to_owned())).collect(),
+        }
+    }
+
+    fn told(&self, family: &dyn ParametrisedField, point: &GeneralPoint) -> Result<Vec<f64>> {
+        match &point.solution {
+            GeneralSolution::Equilibrium { state, .. } => {
+                Ok(self.units.outward(state).as_slice().to_vec())
+            }
+            GeneralSolution::Orbit { shooting, .. } => {
+                let ranges = ranges(&family.field(point.at), shooting)?;
+                let ranges = ranges.into_iter().zip(&self.units.sizes);
+                Ok(ranges
+                    .flat_map(|((a, b), size)| [a * size, b * size])
+                    .collect())
+            }
+        }
+    }
+
+    fn unit_of_time(&self) -> f64 {
+        self.units.time
+    }
+
+    fn length(&self, direction: &Vector) -> f64 {
+        self.units.outward(direction).norm()
+    }
+}

@@ -1,0 +1,169 @@
+//! `--set NAME=VALUE`: any parameter of the model by its name.
+
+use super::options::{ModelOptions, SlabOptions};
+use super::unequal::of_one;
+use twinslip::error::{Error, Result};
+
+/// The names of the parameters that interfaces have, V_H and K first.
+pub(super) const NAMES: [&str; 10] = [
+    "driving",
+    "stiffness",
+    "damping",
+    "healing_time",
+    "residual_strength",
+    "direct_effect",
+    "evolution_effect",
+    "reference_friction",
+    "slip_length",
+    "normal_stress",
+];
+
+/// The names and values.
+///
+/// # Errors
+/// [`Error::Input`] for what is no NAME=VALUE with a finite number, and for a name that comes twice.
+pub(super) fn assignments(set: &[String]) -> Result<Vec<(&str, f64)>> {
+    let mut all: Vec<(&str, f64)> = Vec::with_capacity(set.len());
+    for set in set {
+        let pair = set.split_once('=');
+        let (name, value) =
+            pair.ok_or_else(|| Error::Input(format!("`set` {set:?} must be NAME=VALUE")))?;
+        let number = value.trim().parse::<f64>().ok().filter(|x| x.is_finite());
+        let value = number.ok_or_else(|| {
+            Error::Input(format!("`set` {set:?}: {value:?} is not a finite number"))
+        })?;
+        let name = name.trim();
+        if all.iter().any(|(other, _)| *other == name) {
+            return Err(Error::Input(format!("`set` gives {name} twice")));
+        }
+        all.push((name, value));
+    }
+    Ok(all)
+}
+
+impl ModelOptions {
+    /// The same with what `set` says in the options of these names.
+    ///
+    /// # Errors
+    /// As [`assignments`]; [`Error::Parameter`] for a name that no parameter has.
+    pub(super) fn resolved(&self) -> Result<ModelOptions> {
+        let mut model = self.clone();
+        for (name, value) in assignments(&self.slab.text.set)? {
+            match name {
+                "driving" => put_in(&mut model.driving, name, value)?,
+                "stiffness" => put_in(&mut model.stiffness, name, value)?,
+                _ => model.slab.put(name, value)?,
+            }
+        }
+        Ok(model)
+    }
+}
+
+impl ModelOptions {
+    /// V_H and K as flags or `set` give them, in the user's units.
+    ///
+    /// # Errors
+    /// As [`assignments`].
+    pub(super) fn loading(&self) -> Result<[Option<f64>; 2]> {
+        let set = assignments(&self.slab.text.set)?;
+        let of = |name: &str| set.iter().find(|(set, _)| *set == name).map(|(_, x)| *x);
+        Ok([
+            self.driving.or(of("driving")),
+            self.stiffness.or(of("stiffness")),
+        ])
+    }
+
+    /// Whether a flag or `set` gives the parameter of this name.
+    ///
+    /// # Errors
+    /// As [`assignments`].
+    pub(super) fn gives(&self, name: &str) -> Result<bool> {
+        let flag = match name {
+            "driving" => self.driving.is_some(),
+            "stiffness" => self.stiffness.is_some(),
+            _ => self.slab.flag(name),
+        };
+        Ok(flag || self.slab.sets(name)?)
+    }
+}
+
+impl SlabOptions {
+    /// Whether a flag gives the parameter of this name.
+    pub(super) fn flag(&self, name: &str) -> bool {
+        match name {
+            "damping" => self.damping.or(self.shear_modulus),
+            "healing_time" => self.healing_time,
+            "residual_strength" => self.residual_strength,
+            "direct_effect" => self.direct_effect,
+            "evolution_effect" => self.evolution_effect,
+            "reference_friction" => self.reference_friction,
+            "slip_length" => self.slip_length,
+            "normal_stress" => self.normal_stress,
+            _ => None,
+        }
+        .is_some()
+    }
+
+    /// Whether `set` gives the parameter of this name.
+    ///
+    /// # Errors
+    /// As [`assignments`].
+    pub(super) fn sets(&self, name: &str) -> Result<bool> {
+        let all = assignments(&self.text.set)?;
+        Ok(all.iter().any(|(set, _)| *set == name))
+    }
+
+    /// The same for a command to which V_H and K are a grid.
+    ///
+    /// # Errors
+    /// As [`ModelOptions::resolved`]; [`Error::Input`] for V_H and K.
+    pub(super) fn resolved(&self) -> Result<SlabOptions> {
+        let mut slab = self.clone();
+        for (name, value) in assignments(&self.text.set)? {
+            if ["driving", "stiffness"].contains(&name) {
+                let what = format!("`set` {name}: the grid of this command has it");
+                return Err(Error::Input(what));
+            }
+            slab.put(name, value)?;
+        }
+        Ok(slab)
+    }
+
+    /// The value of a parameter that is neither V_H nor K. Those of one interface are seen to where there is a system.
+    fn put(&mut self, name: &str, value: f64) -> Result<()> {
+        if of_one("set", name)?.is_some() {
+            return Ok(());
+        }
+        if ["slip_length", "normal_stress"].contains(&name) && !self.si {
+            let what = format!("`set` {name}: without `si` it is a unit, and 1");
+            return Err(Error::Input(what));
+        }
+        match name {
+            "damping" if self.shear_modulus.is_some() => Err(twice("damping", "shear-modulus")),
+            "damping" => put_in(&mut self.damping, name, value),
+            "healing_time" => put_in(&mut self.healing_time, name, value),
+            "residual_strength" => put_in(&mut self.residual_strength, name, value),
+            "direct_effect" => put_in(&mut self.direct_effect, name, value),
+            "evolution_effect" => put_in(&mut self.evolution_effect, name, value),
+            "reference_friction" => put_in(&mut self.reference_friction, name, value),
+            "slip_length" => put_in(&mut self.slip_length, name, value),
+            "normal_stress" => put_in(&mut self.normal_stress, name, value),
+            _ => Err(Error::no_parameter("set", name, &NAMES)),
+        }
+    }
+}
+
+/// The value of a parameter that has none.
+pub(super) fn put_in(parameter: &mut Option<f64>, name: &str, value: f64) -> Result<()> {
+    if parameter.replace(value).is_some() {
+        return Err(twice(name, name));
+    }
+    Ok(())
+}
+
+pub(super) fn twice(name: &str, option: &str) -> Error {
+    Error::Input(format!(
+        "`set` {name} and `{}` say the same thing: give one of them",
+        option.replace('_', "-")
+    ))
+}

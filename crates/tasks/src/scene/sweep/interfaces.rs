@@ -1,0 +1,141 @@
+//! Interfaces with a law that is built in, at the points of a grid of any of their parameters.
+
+use super::super::options::SlabOptions;
+use super::super::system::System;
+use super::super::units::{Quantity, Units};
+use super::axes::Axes;
+use crate::scene::plan::NEAR_SYMMETRIC;
+use twinslip::error::Result;
+use twinslip::field::Vector;
+use twinslip::friction::{AnyLaw, Formulas, Law, beside};
+use twinslip::integrate::{AnyField, MotionUnits};
+use twinslip::model::{self, Loading};
+use twinslip::number::polynomial::Crossing;
+use twinslip::section::{Surface, usual_patience};
+use twinslip::sweep::{
+    LawPoints, RandomStart, SectionPlace, SystemPoint, SystemPoints, start_of_interfaces,
+};
+
+/// Part of the usual patience: some 20 periods of stick-slip.
+pub(super) const PATIENCE: f64 = 0.1;
+
+/// Interfaces of which some parameters vary.
+#[derive(Debug)]
+pub(super) struct InterfacePoints {
+    slab: SlabOptions,
+    axes: Axes,
+    units: Units,
+}
+
+impl InterfacePoints {
+    /// Of these options, and what varies of them.
+    ///
+    /// # Errors
+    /// Those of the options at the ends of the axes.
+    pub fn new(slab: &SlabOptions, axes: &Axes) -> Result<(Self, System)> {
+        let mut points = InterfacePoints {
+            slab: slab.clone(),
+            axes: axes.clone(),
+            units: Units::none(),
+        };
+        let mut first = None;
+        for corner in axes.corners() {
+            let system = points.system(&corner)?;
+            system.loading()?;
+            first.get_or_insert(system);
+        }
+        let system = first.expect("there is a corner");
+        points.units = system.units;
+        Ok((points, system))
+    }
+
+    fn system(&self, values: &[f64]) -> Result<System> {
+        let mut slab = self.slab.clone();
+        let (mut driving, mut stiffness) = (self.axes.driving, self.axes.stiffness);
+        for (name, value) in self.axes.names.iter().zip(values) {
+            match name.as_str() {
+                "driving" => driving = Some(*value),
+                "stiffness" => stiffness = Some(*value),
+                _ => slab.text.set.push(format!("{name}={value:?}")),
+            }
+        }
+        System::of(&slab.resolved()?, driving, stiffness)
+    }
+
+    fn told(&self, values: &[f64]) -> Vec<f64> {
+        let of = |name: &str, fixed: Option<f64>| {
+            let place = self.axes.names.iter().position(|known| known == name);
+            place.map(|place| values[place]).or(fixed)
+        };
+        let loading = [
+            (of("driving", self.axes.driving), Quantity::SlipRate),
+            (of("stiffness", self.axes.stiffness), Quantity::Stiffness),
+        ];
+        let inward = |(value, quantity): (Option<f64>, Quantity)| {
+            self.units
+                .inward(quantity, value.expect("it is fixed or varies"))
+        };
+        let others = self.axes.names.iter().zip(values);
+        let others = others.filter(|(name, _)| !is_loading(name));
+        let others = others.map(|(_, value)| *value);
+        loading.map(inward).into_iter().chain(others).collect()
+    }
+}
+
+/// Whether a parameter is V_H or K.
+pub(super) fn is_loading(name: &str) -> bool {
+    ["driving", "stiffness"].contains(&name)
+}
+
+impl LawPoints for InterfacePoints {
+    fn parameters(&self, values: &[f64]) -> Vec<f64> {
+        self.told(values)
+    }
+
+    fn at(&self, values: &[f64]) -> Result<(AnyLaw, Loading)> {
+        let system = self.system(values)?;
+        Ok((system.law, system.loading()?))
+    }
+}
+
+impl SystemPoints for InterfacePoints {
+    fn parameters(&self, values: &[f64]) -> Vec<f64> {
+        self.told(values)
+    }
+
+    fn at(&self, values: &[f64], start: usize, random: RandomStart) -> Result<SystemPoint> {
+        let system = self.system(values)?;
+        let loading = system.loading()?;
+        let field = match (system.interfaces, system.unequal(loading)) {
+            (1, _) => AnyField::new::<2>(model::single_interface(system.law, loading)),
+            (_, Some(unequal)) => AnyField::new::<3>(Box::new(unequal)),
+            (_, None) => AnyField::new::<3>(model::two_interfaces(system.law, loading)),
+        };
+        let stress = system.steady_stress(loading.driving);
+        let laws = &system.laws()[..system.interfaces];
+        let v = loading.driving / system.interfaces as f64;
+        let steady: Vec<f64> = laws.iter().map(|law| law.steady_state(v).ln()).collect();
+        let mut begin = match start {
+            0 => std::iter::once(stress).chain(steady).collect(),
+            kind => start_of_interfaces(kind, random, stress, &steady),
+        };
+        if start == 0
+            && let Some(last) = begin.last_mut()
+        {
+            *last = beside(&system.law, *last, NEAR_SYMMETRIC);
+        }
+        if system.law.bounds_state() {
+            begin[1..].iter_mut().for_each(|w| *w = w.min(0.0));
+        }
+        let patience = PATIENCE * usual_patience(loading.driving, loading.stiffness);
+        let surface = Surface::stress(begin.len(), stress, Crossing::Downwards);
+        Ok(SystemPoint {
+            units: MotionUnits::given(begin.len()),
+            field,
+            start: Vector::from_vec(begin),
+            section: SectionPlace::Known(surface, patience),
+            equal_parts: system.interfaces == 2 && system.unequal.is_none(),
+            enclosed: None,
+        })
+    }
+}

@@ -1,0 +1,272 @@
+//! The steady-state friction of a law from a file: the curve, its extrema and the largest critical stiffness, by zeros of the formulas.
+
+use super::friction::{Friction, Steady};
+use super::model::TextModel;
+use super::slab::TextSlab;
+use crate::scene::law::{LawCurve, LawLandmarks, LawPoint, Together, of_each, slip_rates};
+use crate::scene::options::LawOptions;
+use crate::scene::system::Described;
+use twinslip::error::{Error, Result};
+use twinslip::friction::{Extremum, ExtremumKind, StiffnessMaximum};
+use twinslip::number::{Interval, Jet, Real, Uncertain, bracketed_root, enclosing_radius};
+
+/// A friction law from a file that is asked for, checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TextLawPlan {
+    /// Whose law it is.
+    pub model: TextModel,
+    /// Where it is evaluated, ascending, in V*.
+    pub slip_rates: Vec<f64>,
+    /// What interfaces do that slide together at V_H, where it is given.
+    pub together: Option<Together>,
+}
+
+/// The law at a slip rate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TextLawPoint {
+    /// tau_ss and ln psi_ss.
+    pub steady: Steady,
+    /// tau_ss with its error budget, infinite where that is not known.
+    pub stress: Uncertain,
+    /// psi_ss, likewise.
+    pub state: Uncertain,
+    /// What a law that is built in has there.
+    pub point: LawPoint,
+}
+
+impl TextLawPlan {
+    /// Checks the options for this law.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
+    pub fn new(options: &LawOptions, model: TextModel) -> Result<Self> {
+        Ok(TextLawPlan {
+            slip_rates: slip_rates(options, model.units())?,
+            together: Together::of(&options.model, model.units())?,
+            model,
+        })
+    }
+
+    /// The plan, one subject a line.
+    pub fn explain(&self) -> String {
+        format!(
+            "plan of this command\n  zeros of both formulas at {} slip rates{}, enclosed by interval arithmetic; extrema where slopes change sign between these; no integration",
+            self.slip_rates.len(),
+            of_each(self.slab().differ(&self.model.system))
+        )
+    }
+
+    fn slab(&self) -> &TextSlab {
+        let slab: Option<&TextSlab> = self.model.slab.as_ref();
+        slab.expect("a law from a file")
+    }
+
+    /// The law of both interfaces, where they differ of each, up to a rate at which one has no steady state, and why that is.
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`] where a law has no steady state between two points that have.
+    pub fn curves(&self) -> Result<(Vec<LawCurve<TextLawPoint>>, Option<Error>)> {
+        let count = if self.slab().differ(&self.model.system) {
+            2
+        } else {
+            1
+        };
+        let mut curves = Vec::with_capacity(count);
+        for i in 0..count {
+            let friction = self.slab().friction(&self.model.system, i);
+            let (points, failure) = self.points(&friction, i + 1);
+            let together = self
+                .together
+                .and_then(|all| all.slip_rate)
+                .map(|rate| point(&friction, i + 1, rate));
+            curves.push(LawCurve {
+                interface: i + 1,
+                together: together.transpose()?,
+                landmarks: landmarks(&friction, &points)?,
+                points,
+                coefficient: friction.parameter("direct_effect"),
+            });
+            if failure.is_some() {
+                return Ok((curves, failure));
+            }
+        }
+        Ok((curves, None))
+    }
+
+    /// The law at all slip rates, up to one at which it has no steady state, and why that is.
+    fn points(
+        &self,
+        friction: &Friction<'_>,
+        interface: usize,
+    ) -> (Vec<TextLawPoint>, Option<Error>) {
+        let mut points = Vec::with_capacity(self.slip_rates.len());
+        for &v in &self.slip_rates {
+            match point(friction, interface, v) {
+                Ok(point) => points.push(point),
+                Err(error) => return (points, Some(error)),
+            }
+        }
+        (points, None)
+    }
+}
+
+/// The extrema of the steady stress, and the largest critical stiffness, between the points.
+fn landmarks(friction: &Friction<'_>, points: &[TextLawPoint]) -> Result<LawLandmarks> {
+    let slopes: Vec<Slopes> = points
+        .iter()
+        .map(|at| slopes_at(friction, at.point.slip_rate, at.steady))
+        .collect();
+    let mut extrema = Vec::new();
+    for (pair, ends) in slopes.windows(2).zip(points.windows(2)) {
+        let [left, right] = [0, 1].map(|i| pair[i].relative.value);
+        if left * right.signum() >= 0.0 {
+            continue;
+        }
+        let kind = if left > 0.0 {
+            ExtremumKind::Maximum
+        } else {
+            ExtremumKind::Minimum
+        };
+        let of = |slopes: Slopes<Interval>| slopes.relative.value;
+        // Where the signs are rounding's, and others at the ends of the search, the stress is flat too.
+        let v = match zero_of(friction, ends, |slopes| slopes.relative) {
+            Err(Error::NotConverged { iterations: 0, .. }) => continue,
+            found => found?,
+        };
+        let (around, radius) = enclosure(friction, v, of);
+        // Where no sign is certain the stress is flat, or nearly so.
+        if !radius.is_finite() {
+            continue;
+        }
+        let steady = friction.steady(v)?;
+        let [stress, _] = friction.enclosed(around, steady);
+        extrema.push(Extremum::new(kind, Uncertain::new(v, radius), stress));
+    }
+    Ok(LawLandmarks {
+        extrema,
+        critical_stiffness_maximum: largest_stiffness(friction, points, &slopes)?,
+        transition_rate: None,
+    })
+}
+
+fn point(friction: &Friction<'_>, interface: usize, v: f64) -> Result<TextLawPoint> {
+    let steady = friction.steady(v)?;
+    let [stress, log_state] = friction.enclosed(Interval::constant(v), steady);
+    let psi = steady.log_state.exp();
+    let (critical, _) = friction.steady_slopes(v, steady.stress, psi);
+    let rounding = f64::EPSILON * psi;
+    let state = Uncertain::new(psi, psi * log_state.uncertainty.exp_m1() + rounding);
+    Ok(TextLawPoint {
+        steady,
+        stress,
+        state,
+        point: LawPoint {
+            interface,
+            slip_rate: v,
+            stress: steady.stress,
+            friction: friction
+                .parameter("direct_effect")
+                .map(|a| a * steady.stress),
+            state: psi,
+            critical_stiffness: critical,
+        },
+    })
+}
+
+/// k_c, and what has the sign of d tau_ss/dV, with their derivatives in V.
+#[derive(Debug, Clone, Copy)]
+struct Slopes<T = f64> {
+    critical: Jet<T, 1>,
+    relative: Jet<T, 1>,
+}
+
+fn slopes_at(friction: &Friction<'_>, v: f64, steady: Steady) -> Slopes {
+    let (critical, relative) = friction.along_steady(v, steady.stress, steady.log_state.exp());
+    Slopes { critical, relative }
+}
+
+/// The same with bounds at a rate, or over a range of rates.
+fn slopes_within(friction: &Friction<'_>, v: Interval) -> Option<Slopes<Interval>> {
+    let steady = friction.steady(0.5 * v.lo() + 0.5 * v.hi()).ok()?;
+    let [stress, log_state] = friction.enclosed(v, steady);
+    let known = stress.uncertainty.is_finite();
+    let around = |x: Uncertain| Interval::around(x.value, x.uncertainty);
+    let psi = Real::exp(around(log_state));
+    let (critical, relative) = friction.along_steady(v, around(stress), psi);
+    known.then_some(Slopes { critical, relative })
+}
+
+/// Where a quantity is zero between two points, on either side of which it has opposite signs.
+fn zero_of(
+    friction: &Friction<'_>,
+    ends: &[TextLawPoint],
+    of: impl Fn(Slopes) -> Jet<f64, 1>,
+) -> Result<f64> {
+    let [low, high] = [0, 1].map(|i| ends[i].point.slip_rate.ln());
+    let root = bracketed_root("an extremum of the law", low, high, |x| {
+        let v = x.exp();
+        let quantity = friction.steady(v).map_or(
+            Jet {
+                value: f64::NAN,
+                gradient: [f64::NAN],
+            },
+            |steady| of(slopes_at(friction, v, steady)),
+        );
+        (quantity.value, quantity.gradient[0] * v)
+    });
+    Ok(root?.exp())
+}
+
+/// The rates around v between which a quantity certainly changes its sign, and how far they go.
+fn enclosure(
+    friction: &Friction<'_>,
+    v: f64,
+    of: impl Fn(Slopes<Interval>) -> Interval,
+) -> (Interval, f64) {
+    let unknown = Interval::new(f64::NEG_INFINITY, f64::INFINITY);
+    let radius = enclosing_radius(v, |x| slopes_within(friction, x).map_or(unknown, &of));
+    (Interval::around(v, radius), radius)
+}
+
+/// The largest maximum of k_c between the points, where it has any.
+fn largest_stiffness(
+    friction: &Friction<'_>,
+    points: &[TextLawPoint],
+    slopes: &[Slopes],
+) -> Result<Option<StiffnessMaximum>> {
+    let mut largest: Option<StiffnessMaximum> = None;
+    for (pair, ends) in slopes.windows(2).zip(points.windows(2)) {
+        let [left, right] = [0, 1].map(|i| pair[i].critical.gradient[0]);
+        if !(left > 0.0 && right < 0.0) {
+            continue;
+        }
+        let v = match maximum_of_stiffness(friction, ends) {
+            Err(Error::NotConverged { iterations: 0, .. }) => continue,
+            found => found?,
+        };
+        let of = |slopes: Slopes<Interval>| slopes.critical.gradient[0];
+        let (around, radius) = enclosure(friction, v, of);
+        if !radius.is_finite() {
+            continue;
+        }
+        let stiffness = slopes_at(friction, v, friction.steady(v)?).critical.value;
+        let error = slopes_within(friction, around).map_or(f64::INFINITY, |all| {
+            all.critical.value.distance_from(stiffness)
+        });
+        if largest.is_none_or(|known| known.stiffness.value < stiffness) {
+            largest = Some(StiffnessMaximum::new(
+                Uncertain::new(v, radius),
+                Uncertain::new(stiffness, error),
+            ));
+        }
+    }
+    Ok(largest.filter(|known| known.stiffness.value > 0.0))
+}
+
+fn maximum_of_stiffness(friction: &Friction<'_>, ends: &[TextLawPoint]) -> Result<f64> {
+    // By halves: the slope of the derivative is not known.
+    zero_of(friction, ends, |slopes| Jet {
+        value: slopes.critical.gradient[0],
+        gradient: [f64::NAN],
+    })
+}

@@ -1,0 +1,49 @@
+//! Systems from files in the units in which they move by about 1.
+
+use super::model::TextModel;
+use serde_json::{Value, json};
+use twinslip::error::Result;
+use twinslip::field::Vector;
+use twinslip::integrate::MotionUnits;
+use twinslip::number::Interval;
+
+impl TextModel {
+    /// Those of a run from here; interfaces keep theirs, in which all are of order 1.
+    ///
+    /// # Errors
+    /// Those of the field.
+    pub fn motion_units(&self, start: &Vector) -> Result<MotionUnits> {
+        match self.slab {
+            Some(_) => Ok(MotionUnits::given(start.len())),
+            None => MotionUnits::measured(&self.system, start),
+        }
+    }
+
+    /// Those of a box in which equilibria are looked for, where no start is known: a part of its widths, and the fastest rate in its middle.
+    ///
+    /// # Errors
+    /// Those of the field.
+    pub fn motion_units_within(&self, ranges: &[Interval]) -> Result<MotionUnits> {
+        if self.slab.is_some() {
+            return Ok(MotionUnits::given(ranges.len()));
+        }
+        let middle = ranges.iter().map(|range| 0.5 * (range.lo() + range.hi()));
+        let middle = Vector::from_iterator(ranges.len(), middle);
+        let widths: Vec<f64> = ranges.iter().map(|range| range.hi() - range.lo()).collect();
+        MotionUnits::in_box(&self.system, &middle, &widths)
+    }
+
+    /// The absolute tolerance in words: one number that is given, or of interfaces; else what each state may err by in its own unit.
+    pub fn absolute_tolerance(&self, units: &MotionUnits, atol: f64, is_given: bool) -> Value {
+        match is_given || self.slab.is_some() {
+            true => json!(atol),
+            false => json!(
+                units
+                    .sizes
+                    .iter()
+                    .map(|size| size * atol)
+                    .collect::<Vec<_>>()
+            ),
+        }
+    }
+}

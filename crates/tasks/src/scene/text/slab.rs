@@ -1,0 +1,522 @@
+//! Interfaces whose friction law is from a file, and what the options say about them.
+
+use super::friction::Friction;
+use super::law_file::{DAMPING, DRIVING, LawFile, STIFFNESS, Sliding};
+use super::model::number;
+use crate::scene::options::{ModelOptions, SlabOptions};
+use crate::scene::plan::{NEAR_SYMMETRIC, USUAL_START};
+use crate::scene::set::{assignments, put_in, twice};
+use crate::scene::system::damping;
+use serde_json::{Map, Value, json};
+use std::borrow::Cow;
+use twinslip::error::{Error, Result};
+use twinslip::field::Vector;
+use twinslip::friction::positive;
+use twinslip::integrate::AnyField;
+use twinslip::model::TextSystem;
+use twinslip::number::{Interval, Jet, Real, Uncertain};
+use twinslip::orbit::{AlongArcs, ShootingNodes, WithinCluster, within_clusters};
+use twinslip::sweep::RandomStart;
+
+/// Interfaces under one stress, with the law of a file: each on its own, or in clusters that move alike.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TextSlab {
+    law: LawFile,
+    /// How many interfaces there are in each cluster.
+    counts: Vec<usize>,
+    /// For each cluster where the law's own parameters stand among those of the system.
+    places: Vec<Vec<usize>>,
+    /// V_H, where it is given.
+    pub(super) driving: Option<f64>,
+}
+
+/// A parameter of the law: of all interfaces, or where they differ of each.
+struct Own {
+    name: String,
+    values: Vec<f64>,
+    differs: bool,
+}
+
+impl TextSlab {
+    /// The interfaces that the options describe, and their equations. Of V_H and K those that are `free` need not be given.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
+    pub(super) fn new(
+        law: LawFile,
+        options: &ModelOptions,
+        free: &[&str],
+    ) -> Result<(Self, TextSystem)> {
+        let counts = counts(&options.slab)?;
+        let interfaces = counts.len();
+        if options.slab.si {
+            return Err(Error::Input(match options.slab.law_file() {
+                Some(_) => format!(
+                    "`si`: the law {} is from a file, whose numbers have no units",
+                    law.name
+                ),
+                None => {
+                    "`si`: clusters, and more than 2 interfaces, are computed without units".into()
+                }
+            }));
+        }
+        let law = damped(law, options)?;
+        let mut loading = [options.driving, options.stiffness];
+        let own = parameters(&law, options, interfaces, &mut loading)?;
+        let [driving, stiffness] = loading;
+        for (name, value) in [("driving", driving), ("stiffness", stiffness)] {
+            let allows_rest = name == "driving" && value == Some(0.0) && free.contains(&name);
+            if let Some(value) = value.filter(|_| !allows_rest) {
+                positive(name, value)?;
+            }
+        }
+        let needed = |name: &str, symbol: &str, value: Option<f64>| match value {
+            // Any value, which is set before it counts.
+            None if free.contains(&name) => Ok(1.0),
+            None => Err(Error::Input(format!(
+                "`{name}` {symbol} is missing, and has no default"
+            ))),
+            Some(value) => Ok(value),
+        };
+        let mut names = vec![
+            ("driving".to_owned(), needed("driving", "V_H", driving)?),
+            ("stiffness".to_owned(), needed("stiffness", "K", stiffness)?),
+        ];
+        let mut places = vec![Vec::new(); interfaces];
+        for Own {
+            name,
+            values,
+            differs,
+        } in own
+        {
+            for (i, places) in places.iter_mut().enumerate() {
+                places.push(names.len() + if differs { i } else { 0 });
+            }
+            if differs {
+                let each = values.iter().enumerate();
+                names.extend(each.map(|(i, &value)| (format!("{name}_{}", i + 1), value)));
+            } else {
+                names.push((name, values[0]));
+            }
+        }
+        let twice = |(i, (name, _)): &(usize, &(String, f64))| {
+            names[..*i].iter().any(|(other, _)| other == name)
+        };
+        if let Some((_, (name, _))) = names.iter().enumerate().find(twice) {
+            return Err(Error::Input(format!(
+                "`set`: {name} is both a parameter of the law {} and that of one interface",
+                law.name
+            )));
+        }
+        let slab = TextSlab {
+            law,
+            counts,
+            places,
+            driving,
+        };
+        let parameters: Vec<(&str, f64)> = names.iter().map(|(n, x)| (n.as_str(), *x)).collect();
+        let system = slab.system(&parameters, false)?;
+        Ok((slab, system))
+    }
+
+    /// How many interfaces there are.
+    pub fn interfaces(&self) -> usize {
+        self.counts.iter().sum()
+    }
+
+    /// How many of them there are in each cluster.
+    pub fn clusters(&self) -> &[usize] {
+        &self.counts
+    }
+
+    /// The states of clusters as large, with the same parameters whatever varies: an exchange of these is no change.
+    pub(in crate::scene) fn interchangeable(&self) -> Vec<Vec<usize>> {
+        let same = |i: usize, j: usize| {
+            self.counts[i] == self.counts[j] && self.places[i] == self.places[j]
+        };
+        let of = |first: usize| {
+            let all = (first..self.counts.len()).filter(|&i| same(first, i));
+            // The stress comes first.
+            all.map(|i| i + 1).collect::<Vec<usize>>()
+        };
+        let firsts = (0..self.counts.len()).filter(|&i| (0..i).all(|j| !same(i, j)));
+        firsts.map(of).filter(|group| group.len() > 1).collect()
+    }
+
+    /// Whether there are two parts, as large, whose parameters are the same.
+    pub(in crate::scene) fn are_equal(&self, system: &TextSystem) -> bool {
+        matches!(self.counts[..], [one, other] if one == other) && !self.differ(system)
+    }
+
+    /// Whether the interfaces differ in any parameter of the law.
+    pub(super) fn differ(&self, system: &TextSystem) -> bool {
+        let own = |places: &Vec<usize>| -> Vec<f64> {
+            places.iter().map(|&i| system.parameters()[i]).collect()
+        };
+        self.places
+            .windows(2)
+            .any(|pair| own(&pair[0]) != own(&pair[1]))
+    }
+
+    /// What the law is called.
+    pub fn law_name(&self) -> &str {
+        &self.law.name
+    }
+
+    /// The parameters of these interfaces as an object has them.
+    pub(super) fn echo(&self, system: &TextSystem) -> Map<String, Value> {
+        let all = system.parameter_names().iter().zip(system.parameters());
+        let own = all.clone().skip(STIFFNESS + 1);
+        let own: Map<String, Value> = own.map(|(n, x)| ((*n).to_owned(), json!(x))).collect();
+        let mut echo = Map::new();
+        echo.insert("law".into(), json!(self.law.name));
+        echo.insert("interfaces".into(), json!(self.interfaces()));
+        if self.interfaces() > 2 || self.has_clusters() {
+            echo.insert("clusters".into(), json!(self.counts));
+        }
+        for (name, value) in all.take(STIFFNESS + 1) {
+            echo.insert((*name).to_owned(), json!(value));
+        }
+        echo.insert("formulas".into(), json!(self.law.fingerprint));
+        echo.insert("states".into(), json!(system.states()));
+        echo.insert("parameters".into(), Value::Object(own));
+        echo
+    }
+
+    /// The equations at these parameters; on a ramp V_H is the last state, and its rate of change stands in its place.
+    fn system(&self, parameters: &[(&str, f64)], ramp: bool) -> Result<TextSystem> {
+        let parts = (&*self.places, &*self.counts);
+        let Sliding { rates, slip_rates } = Sliding::of(&self.law, parts, ramp)?;
+        let mut states = vec!["stress".to_owned()];
+        states.extend((1..=self.counts.len()).map(|i| format!("log_state_{i}")));
+        if ramp {
+            states.push("driving".into());
+        }
+        let states: Vec<&str> = states.iter().map(String::as_str).collect();
+        TextSystem::sliding((rates, slip_rates), &states, parameters)
+    }
+
+    /// The same equations on a ramp of V_H, which is then the last state.
+    pub(super) fn on_ramp(&self, system: &TextSystem, rate: f64) -> Result<TextSystem> {
+        let all = system.parameter_names().iter().zip(system.parameters());
+        let mut parameters: Vec<(&str, f64)> = all.map(|(name, &x)| (*name, x)).collect();
+        parameters[DRIVING] = ("driving_rate", rate);
+        self.system(&parameters, true)
+    }
+
+    /// The friction of an interface at the parameters of the system.
+    pub fn friction(&self, system: &TextSystem, interface: usize) -> Friction<'_> {
+        let all = system.parameters();
+        let places = self.places[interface].iter();
+        Friction::new(&self.law, places.map(|&place| all[place]).collect())
+    }
+
+    /// The multipliers of an orbit within its clusters, at the parameters of the system.
+    ///
+    /// # Errors
+    /// Those of [`within_clusters`].
+    pub(in crate::scene) fn within(
+        &self,
+        system: &TextSystem,
+        shooting: &ShootingNodes,
+        along: AlongArcs,
+    ) -> Result<Vec<WithinCluster>> {
+        let each: Vec<_> = (0..self.counts.len())
+            .map(|i| self.friction(system, i))
+            .collect();
+        let rate = |cluster: usize, [tau, w]: [f64; 2]| {
+            let psi = Real::exp(Jet::variable(w, 1));
+            each[cluster].split_rate(Jet::variable(tau, 0), psi)
+        };
+        let field = AnyField::of_text(Cow::Borrowed(system))?;
+        within_clusters(&field, shooting, &self.counts, &rate, along)
+    }
+
+    /// The eigenvalues of an equilibrium within its clusters, with what the state's last digits make of them.
+    pub(in crate::scene) fn within_state(
+        &self,
+        system: &TextSystem,
+        state: &Vector,
+    ) -> Vec<WithinCluster> {
+        /// Of a state, in units of 1 + |x|.
+        const ROUNDED: f64 = 4.0 * f64::EPSILON;
+        let counts = self.counts.iter().enumerate();
+        let split = counts.filter(|(_, count)| **count > 1);
+        let within = split.map(|(i, &count)| {
+            let [tau, w] = [state[0], state[i + 1]];
+            let psi = Real::exp(Jet::variable(w, 1));
+            let friction = self.friction(system, i);
+            let rate: Jet<f64, 2> = friction.split_rate(Jet::variable(tau, 0), psi);
+            let [of_tau, of_state] = rate.gradient.map(f64::abs);
+            let moved = of_tau * (1.0 + tau.abs()) + of_state * (1.0 + w.abs());
+            WithinCluster {
+                cluster: i + 1,
+                multiplicity: count - 1,
+                ln_abs: Uncertain::new(rate.value, ROUNDED * (moved + rate.value.abs())),
+            }
+        });
+        within.collect()
+    }
+
+    /// tau and ln psi of every interface, as `--start` gives them.
+    ///
+    /// # Errors
+    /// [`Error::Input`] and [`Error::Parameter`] for what can't be read or is outside its domain, [`Error::NotConverged`] where the law
+    /// has no steady state at which to start.
+    pub(in crate::scene) fn start(
+        &self,
+        text: Option<&str>,
+        system: &TextSystem,
+    ) -> Result<Vec<f64>> {
+        let text = text.unwrap_or(USUAL_START);
+        let shape = match self.counts.len() {
+            1 => "TAU,PSI".to_owned(),
+            2 => "TAU,PSI1,PSI2".to_owned(),
+            count => format!("TAU,PSI1,...,PSI{count}"),
+        };
+        let unreadable = || {
+            Error::Input(format!(
+                "`start` {text:?} must be {shape}, {USUAL_START}[:EPS] or {SPREAD}[:EPS[:SEED]]"
+            ))
+        };
+        let read = |part: &str| {
+            number(part).ok_or_else(|| {
+                Error::Input(format!("`start` {text:?}: {part:?} is not a finite number"))
+            })
+        };
+        if let Some(rest) = text.strip_prefix(USUAL_START) {
+            let asymmetry = match rest.strip_prefix(':') {
+                Some(part) => read(part)?,
+                None if rest.is_empty() => NEAR_SYMMETRIC,
+                None => return Err(unreadable()),
+            };
+            return self.near_symmetric(asymmetry, system, &shape);
+        }
+        if let Some(rest) = text.strip_prefix(SPREAD) {
+            let mut parts = rest.split(':');
+            let begins = parts.next() == Some("");
+            let by = parts.next().map_or(Ok(NEAR_SYMMETRIC), read)?;
+            let seed = parts.next().map_or(Ok(1), str::parse);
+            return match (seed, parts.next()) {
+                (Ok(seed), None) if begins => self.spread(by, seed, system, &shape),
+                _ => Err(unreadable()),
+            };
+        }
+        let mut start = text.split(',').map(read).collect::<Result<Vec<f64>>>()?;
+        if start.len() != self.counts.len() + 1 {
+            return Err(unreadable());
+        }
+        for psi in &mut start[1..] {
+            *psi = positive("psi in `start`", *psi)?.ln();
+        }
+        Ok(start)
+    }
+
+    /// What stress and ln psi have where every interface slides steadily, at rates from a small part of V_H to all of it. Equilibria have
+    /// rates whose sum is V_H.
+    pub(super) fn steady_box(&self, system: &TextSystem) -> Result<Vec<Interval>> {
+        /// The least rate over V_H, and at how many rates the range is looked at.
+        const LEAST: f64 = 1e-6;
+        const RATES: usize = 61;
+        /// Of a range, on either side of it.
+        const MARGIN: f64 = 0.05;
+        let driving = system.parameters()[DRIVING];
+        let mut ends = vec![(f64::INFINITY, f64::NEG_INFINITY); self.counts.len() + 1];
+        let mut put = |i: usize, x: f64| ends[i] = (ends[i].0.min(x), ends[i].1.max(x));
+        for i in 0..self.counts.len() {
+            let friction = self.friction(system, i);
+            for k in 0..RATES {
+                let v = driving * LEAST.powf(k as f64 / (RATES - 1) as f64);
+                let steady = friction.steady(v)?;
+                put(0, steady.stress);
+                put(i + 1, steady.log_state);
+            }
+        }
+        let wider = |(low, high): (f64, f64)| {
+            let by = MARGIN * (high - low) + MARGIN;
+            Interval::new(low - by, high + by)
+        };
+        Ok(ends.into_iter().map(wider).collect())
+    }
+
+    /// The steady stress of the first interface at an equal share of V_H.
+    pub(in crate::scene) fn mean_stress(&self, system: &TextSystem) -> Result<f64> {
+        let v = system.parameters()[DRIVING] / self.interfaces() as f64;
+        Ok(self.friction(system, 0).steady(v)?.stress)
+    }
+
+    /// A start of interfaces that move alike: all in their steady states, and moved by exp(EPS) of the usual start.
+    pub(super) fn alike(&self, system: &TextSystem) -> Result<Vec<f64>> {
+        let mut start = self.start(Some(&format!("{USUAL_START}:0")), system)?;
+        start[1..].iter_mut().for_each(|w| *w += NEAR_SYMMETRIC);
+        Ok(start)
+    }
+
+    /// Each interface in its steady state at an equal share of V_H, the stress that of the first, and the last one moved by exp(EPS).
+    fn near_symmetric(&self, by: f64, system: &TextSystem, shape: &str) -> Result<Vec<f64>> {
+        let mut start = self.steady(USUAL_START, system, shape)?;
+        if let Some(last) = start.last_mut() {
+            *last += by;
+        }
+        Ok(start)
+    }
+
+    /// The same, and each psi times exp(EPS z), z drawn between -1 and 1.
+    fn spread(&self, by: f64, seed: u64, system: &TextSystem, shape: &str) -> Result<Vec<f64>> {
+        let mut start = self.steady(SPREAD, system, shape)?;
+        let mut random = RandomStart::new(seed, 0);
+        for log_state in &mut start[1..] {
+            *log_state += by * random.between((-1.0, 1.0));
+        }
+        Ok(start)
+    }
+
+    /// Each interface in its steady state at an equal share of V_H, the stress that of the first.
+    fn steady(&self, name: &str, system: &TextSystem, shape: &str) -> Result<Vec<f64>> {
+        let driving = system.parameters()[DRIVING];
+        if driving == 0.0 {
+            return Err(Error::Input(format!(
+                "`start` {name} is at the steady state, of which there is none at V_H = 0: give `start` {shape}"
+            )));
+        }
+        let v = driving / self.interfaces() as f64;
+        let mut start = Vec::with_capacity(self.counts.len() + 1);
+        for i in 0..self.counts.len() {
+            let steady = self.friction(system, i).steady(v)?;
+            if i == 0 {
+                start.push(steady.stress);
+            }
+            start.push(steady.log_state);
+        }
+        Ok(start)
+    }
+
+    /// Whether any interfaces move alike by being in one cluster.
+    fn has_clusters(&self) -> bool {
+        self.counts.iter().any(|&count| count > 1)
+    }
+}
+
+/// How many interfaces there are in each cluster: one, where the options say nothing of clusters.
+fn counts(options: &SlabOptions) -> Result<Vec<usize>> {
+    const MOST: usize = TextSystem::LARGEST - 1;
+    let interfaces = options.count();
+    let Some(text) = &options.clusters else {
+        return match interfaces {
+            0 => Err(Error::parameter("interfaces", interfaces, "at least 1")),
+            _ if interfaces as usize <= MOST => Ok(vec![1; interfaces as usize]),
+            _ => Err(Error::Input(format!(
+                "`interfaces` {interfaces}: at most {MOST} can move on their own here; say which move alike by `clusters`"
+            ))),
+        };
+    };
+    let wrong = |must: String| Error::Input(format!("`clusters` {text:?} must be {must}"));
+    let read = |part: &str| part.trim().parse::<u32>().ok().filter(|&count| count > 0);
+    let counts: Option<Vec<u32>> = text.split(',').map(read).collect();
+    let counts = counts
+        .filter(|counts| counts.len() <= MOST)
+        .ok_or_else(|| wrong(format!("1 to {MOST} whole numbers, each at least 1")))?;
+    let sum: u64 = counts.iter().copied().map(u64::from).sum();
+    if sum != u64::from(interfaces) {
+        return Err(wrong(format!(
+            "numbers that together are {interfaces}, the number of `interfaces`"
+        )));
+    }
+    Ok(counts.into_iter().map(|count| count as usize).collect())
+}
+
+/// A start at steady states that are moved apart at random.
+pub(in crate::scene) const SPREAD: &str = "spread";
+
+/// The law with the radiation damping that the options give it, where it has no parameter of that name itself.
+fn damped(law: LawFile, options: &ModelOptions) -> Result<LawFile> {
+    if law.place(DAMPING).is_some() {
+        return Ok(law);
+    }
+    let set = assignments(&options.slab.text.set)?;
+    let set = set.into_iter().rfind(|(name, _)| *name == DAMPING);
+    let given = SlabOptions {
+        damping: set.map(|(_, value)| value).or(options.slab.damping),
+        ..options.slab.clone()
+    };
+    match damping(&given)? {
+        0.0 => Ok(law),
+        eta => law.damped(eta),
+    }
+}
+
+/// The parameters of the law, with what the options and `--set` say; V_H and K go to `loading`.
+fn parameters(
+    law: &LawFile,
+    options: &ModelOptions,
+    interfaces: usize,
+    loading: &mut [Option<f64>; 2],
+) -> Result<Vec<Own>> {
+    let of_file = law.parameters.iter().map(|(name, value)| Own {
+        name: name.clone(),
+        values: vec![*value; interfaces],
+        differs: false,
+    });
+    let mut own: Vec<Own> = of_file.collect();
+    let slab = &options.slab;
+    let given = [
+        ("healing_time", slab.healing_time),
+        ("residual_strength", slab.residual_strength),
+        ("direct_effect", slab.direct_effect),
+        ("evolution_effect", slab.evolution_effect),
+        ("reference_friction", slab.reference_friction),
+        (DAMPING, slab.damping),
+    ];
+    for (name, value) in given {
+        let Some(value) = value else { continue };
+        let Some(own) = own.iter_mut().find(|own| own.name == name) else {
+            // Without damping a law needs none.
+            if name == DAMPING {
+                continue;
+            }
+            let option = name.replace('_', "-");
+            return Err(Error::Input(format!(
+                "`{option}`: the law {} is from a file, and has no parameter {name}",
+                law.name
+            )));
+        };
+        own.values.fill(value);
+    }
+    for (name, value) in assignments(&slab.text.set)? {
+        match name {
+            "driving" => put_in(&mut loading[0], name, value)?,
+            "stiffness" => put_in(&mut loading[1], name, value)?,
+            _ if given
+                .iter()
+                .any(|(option, value)| *option == name && value.is_some()) =>
+            {
+                return Err(twice(name, name));
+            }
+            DAMPING if law.place(DAMPING).is_none() => {}
+            _ => put(&mut own, name, value, interfaces)?,
+        }
+    }
+    Ok(own)
+}
+
+/// Another value of a parameter of all interfaces, or of one.
+fn put(own: &mut [Own], name: &str, value: f64, interfaces: usize) -> Result<()> {
+    if let Some(own) = own.iter_mut().find(|own| own.name == name) {
+        own.values.fill(value);
+        return Ok(());
+    }
+    let numbered = name.rsplit_once('_').and_then(|(stem, number)| {
+        let i = number.parse::<usize>().ok()?;
+        (interfaces > 1 && (1..=interfaces).contains(&i)).then_some((stem, i - 1))
+    });
+    if let Some((stem, i)) = numbered
+        && let Some(own) = own.iter_mut().find(|own| own.name == stem)
+    {
+        own.values[i] = value;
+        own.differs = true;
+        return Ok(());
+    }
+    let names = own.iter().map(|own| own.name.as_str());
+    let known: Vec<&str> = ["driving", "stiffness"].into_iter().chain(names).collect();
+    Err(Error::no_parameter("set", name, &known))
+}

@@ -1,0 +1,148 @@
+//! What steady states show.
+
+use crate::scene::{CellValue, ClassifiedEquilibrium, Column, Quantity};
+use twinslip::equilibrium::{ClusterEigenvalue, Equilibrium};
+
+type Row = ClassifiedEquilibrium;
+
+/// Interfaces that are told one by one; of more what is told is their clusters.
+const ONE_BY_ONE: usize = 2;
+/// A steady state has so many clusters at most, and so many eigenvalues of different kinds and values.
+const CLUSTERS: usize = 3;
+const EIGENVALUES: usize = CLUSTERS + 1 + CLUSTERS;
+
+/// The columns of the steady states of so many interfaces, of more than two by clusters. A table has room for what is looked at first: of
+/// the eigenvalues for the leading one, which decides.
+pub fn equilibria_columns(interfaces: usize) -> Vec<Column<ClassifiedEquilibrium>> {
+    use Quantity::{LogState, Number, SlipRate, State, Stress};
+    let by_clusters = interfaces > ONE_BY_ONE;
+    let numbers = if by_clusters { CLUSTERS } else { interfaces };
+    let each = |name: &str, quantity, list: fn(&Equilibrium) -> Vec<f64>| -> Vec<Column<Row>> {
+        let column = |i| {
+            Column::new(format!("{name}_{}", i + 1), quantity, move |row: &Row| {
+                CellValue::from(list(&row.equilibrium).get(i).copied())
+            })
+        };
+        (0..numbers).map(column).collect()
+    };
+    let aside = |columns: Vec<Column<Row>>| columns.into_iter().map(Column::not_in_table);
+    let mut columns = vec![
+        Column::new("symmetry", Number, |row: &Row| {
+            row.equilibrium.symmetry.name().into()
+        })
+        .in_table_if(interfaces > 1),
+        Column::uncertain("stress", Stress, |row: &Row| row.equilibrium.stress.into()),
+    ];
+    if by_clusters {
+        let count = |i: usize| {
+            Column::new(format!("count_{}", i + 1), Number, move |row: &Row| {
+                let count = row.equilibrium.counts.get(i).copied();
+                count.map_or(CellValue::Number(None), CellValue::from)
+            })
+        };
+        columns.extend((0..CLUSTERS).map(count));
+        columns.push(Column::new("arrangements", Number, |row: &Row| {
+            /// Whole numbers up to this are exact as doubles.
+            const EXACT: f64 = (1_u64 << 53) as f64;
+            match row.equilibrium.arrangements() {
+                ways if ways < EXACT => CellValue::from(ways as usize),
+                ways => ways.into(),
+            }
+        }));
+    }
+    let state = each("state", State, Equilibrium::state);
+    columns.extend(state.into_iter().map(|column| match by_clusters {
+        true => column.not_in_table(),
+        false => column,
+    }));
+    columns.extend(aside(each(
+        "state_uncertainty",
+        State,
+        Equilibrium::state_uncertainty,
+    )));
+    columns.extend(aside(each("log_state", LogState, |one| {
+        one.log_state.clone()
+    })));
+    columns.extend(aside(each(
+        "log_state_uncertainty",
+        // Of a logarithm: whatever the unit.
+        Number,
+        Equilibrium::log_state_uncertainty,
+    )));
+    columns.extend(each("slip_rate", SlipRate, |one| one.slip_rate.clone()));
+    columns.extend(aside(each(
+        "slip_rate_uncertainty",
+        SlipRate,
+        Equilibrium::slip_rate_uncertainty,
+    )));
+    let eigenvalues = if by_clusters {
+        EIGENVALUES
+    } else {
+        interfaces + 1
+    };
+    columns.extend((0..eigenvalues).flat_map(|i| eigenvalue_columns(i, by_clusters)));
+    columns.extend([
+        Column::new("verdict", Number, |row: &Row| {
+            row.stability.as_ref().map(|s| s.verdict().name()).into()
+        }),
+        Column::new("residual", Number, |row: &Row| row.residual.into()).not_in_table(),
+    ]);
+    columns
+}
+
+/// Those of one eigenvalue.
+fn eigenvalue_columns(i: usize, by_clusters: bool) -> Vec<Column<Row>> {
+    use Quantity::{Growth, Number};
+    let of_cluster =
+        move |row: &Row| -> Option<ClusterEigenvalue> { row.of_clusters()?.get(i).copied() };
+    let eigenvalue = move |row: &Row| match row.of_each() {
+        Some(stability) => stability.eigenvalues.get(i).copied(),
+        None => of_cluster(row).map(|one| one.value),
+    };
+    let uncertainty = move |row: &Row| match row.of_each() {
+        Some(stability) => stability.uncertainty.get(i).copied(),
+        None => of_cluster(row).map(|one| one.uncertainty),
+    };
+    let place = i + 1;
+    let mut columns = vec![
+        Column::new(
+            format!("eigenvalue_{place}_re"),
+            Growth,
+            move |row: &Row| eigenvalue(row).map(|z| z.re).into(),
+        ),
+        Column::new(
+            format!("eigenvalue_{place}_im"),
+            Growth,
+            move |row: &Row| eigenvalue(row).map(|z| z.im).into(),
+        ),
+        Column::new(
+            format!("eigenvalue_uncertainty_{place}"),
+            Growth,
+            move |row: &Row| uncertainty(row).into(),
+        )
+        .not_in_table(),
+    ];
+    if by_clusters {
+        columns.extend([
+            Column::new(
+                format!("eigenvalue_{place}_multiplicity"),
+                Number,
+                move |row: &Row| {
+                    let count = of_cluster(row).map(|one| one.multiplicity);
+                    count.map_or(CellValue::Number(None), CellValue::from)
+                },
+            )
+            .not_in_table(),
+            Column::new(
+                format!("eigenvalue_{place}_kind"),
+                Number,
+                move |row: &Row| of_cluster(row).map(|one| one.kind.name()).into(),
+            )
+            .not_in_table(),
+        ]);
+    }
+    for column in &mut columns {
+        column.in_table &= i == 0;
+    }
+    columns
+}

@@ -1,0 +1,98 @@
+//! How rows are shown: the columns of results, as cells and as objects, and their pictures.
+
+use crate::scene::{CellValue, Column, Quantity, Units};
+use serde_json::{Map, Value, json};
+use twinslip_output::{self, Cell};
+
+mod bifurcation;
+mod catalogue;
+mod clusters;
+mod diagram;
+mod equilibria;
+mod fit;
+mod general;
+mod law;
+mod listing;
+mod many;
+mod many_equilibria;
+mod map;
+mod orbit;
+mod points;
+mod run;
+pub mod sweep;
+mod text;
+
+pub use bifurcation::{branch_columns, locus_columns, special_columns};
+pub use catalogue::{many_event_columns, participation_columns, picture_of_events};
+pub use clusters::{cluster_columns, staircase};
+pub use diagram::{axis_label, branch_lines, branches, curves, named_strokes, parameters};
+pub use equilibria::equilibria_columns;
+pub use fit::{
+    FitRow, digits_of, fit_columns, in_digits, parameter_label, picture_of_fit,
+    picture_of_parameters, scale_name,
+};
+pub use general::{general_branches, general_curves, general_lines, quantity_label};
+pub use law::law_columns;
+pub use listing::{Listed, Listing};
+pub use many::many_run;
+pub use many_equilibria::steady_interface_columns;
+pub use map::{return_map, states_at_returns};
+pub use orbit::orbit_columns;
+pub use points::{REGIMES, outcome, sweep_columns, sweep_row};
+pub use run::{event_columns, panels_in_time, phase_plane, picture_of_run};
+pub use sweep::{
+    Basins, GridSide, PointOutcome, basin_map, basins_of_states, parameter_map, regime_line,
+    regime_map,
+};
+pub use text::{
+    text_equilibria_columns, text_law_columns, text_orbit_columns, text_return_map, text_run,
+};
+
+/// The names as written, error budgets in columns of their own but in tables.
+pub fn names<R>(columns: &[Column<R>], table: bool) -> Vec<(String, Quantity)> {
+    let mut names = Vec::new();
+    for column in columns.iter().filter(|column| column.in_table || !table) {
+        names.push((column.name.to_string(), column.quantity));
+        if column.uncertain && !table {
+            names.push((format!("{}_uncertainty", column.name), column.quantity));
+        }
+    }
+    names
+}
+
+/// A row in the user's units.
+pub fn cells<R>(columns: &[Column<R>], row: &R, units: &Units, table: bool) -> Vec<Cell> {
+    let mut cells = Vec::new();
+    for column in columns.iter().filter(|column| column.in_table || !table) {
+        match column.entry(row) {
+            CellValue::Number(x) => cells.push(x.map(|x| units.outward(column.quantity, x)).into()),
+            CellValue::Uncertain(x) => {
+                let x = x.map(|x| units.outward_uncertain(column.quantity, x));
+                cells.push(x.map(|x| x.value).into());
+                if !table {
+                    cells.push(x.map(|x| x.uncertainty).into());
+                }
+            }
+            CellValue::Word(word) => cells.push(word.map_or(Cell::Missing, Cell::Text)),
+            CellValue::Count(n) => cells.push(Cell::Text(n.to_string())),
+        }
+    }
+    cells
+}
+
+/// A row as an object.
+pub fn object<R>(columns: &[Column<R>], row: &R, units: &Units) -> Map<String, Value> {
+    let value = |column: &Column<R>| match column.entry(row) {
+        CellValue::Number(x) => json!(x.map(|x| units.outward(column.quantity, x))),
+        CellValue::Uncertain(x) => x.map_or(Value::Null, |x| {
+            let x = units.outward_uncertain(column.quantity, x);
+            twinslip_output::uncertain((x.value, x.uncertainty))
+        }),
+        CellValue::Word(word) => json!(word),
+        CellValue::Count(n) => json!(n),
+    };
+    let pairs = columns.iter();
+    pairs
+        .map(|column| (column.name.to_string(), value(column)))
+        .collect()
+}
