@@ -21,11 +21,9 @@
 //! | [`section::record()`] | the returns of a run to a section; what they settle on by [`section::verdict()`] |
 //! | [`fit::fit()`] | friction parameters from laboratory records, with errors that hold |
 //! | [`sweep::run()`] | maps of regimes over a grid of (V_H, K) or any parameters, or of starts |
-//! | `scene::Plan` | what a run computes: only what its outputs need (feature `cli`) |
-//! | `paper::reproduce()` | the paper's figures, Table 1, scorecard and report, of which only what is missing is computed (feature `cli`) |
 //!
-//! The default features `cli` and `sundials` are the command and the C solvers. Without them this is the library alone, which few
-//! other packages are compiled for; `plot` adds `output`: tables, files, pictures and pages.
+//! The default feature `sundials` is the C solvers. What the commands compute is in the crate `twinslip-tasks`, the paper's figures in
+//! `twinslip-paper`, the command in `twinslip-cli`; tables, files, pictures and pages are of `twinslip-output`.
 //!
 //! Everything is dimensionless unless it says otherwise: stress tau in a sigma, slip rate v in V*, length in L, time in
 //! L/V*. K = k L / (a sigma), R = t** V*/L, beta = b/a, gamma0 = 2 exp(-a_v/a). Numbers in parentheses are the equations of

@@ -5,7 +5,7 @@ use parquet::record::Field;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use twinslip_output::parquet::{GROUP, from_csv};
+use twinslip_cli::internals::{GROUP, from_csv};
 
 /// More than one group, the last one short.
 const ROWS: usize = GROUP + 1234;

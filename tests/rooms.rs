@@ -25,7 +25,10 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "model", "friction", "field", "series", "number", "contract", "sundials",
         ],
     ),
-    ("equilibrium", &["friction", "number", "field", "sundials"]),
+    (
+        "equilibrium",
+        &["friction", "model", "number", "field", "sundials"],
+    ),
     ("continuation", &[]),
     (
         "section",

@@ -23,7 +23,7 @@ const TOLERANCES: [f64; 7] = [1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14];
 const DECADES: [f64; 7] = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
 
 fn root() -> &'static Path {
-    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
+    Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
 /// Writes only what `cargo bench` measured, not what `cargo test` looked at.

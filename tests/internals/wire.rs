@@ -1,10 +1,10 @@
 //! Rows as bytes.
 
 use twinslip::equilibrium::Symmetry;
-use twinslip::internals::{pack, unpack};
 use twinslip::number::Uncertain;
 use twinslip::section::Regime;
 use twinslip::sweep::SweepRow;
+use twinslip_cli::internals::{pack, unpack};
 
 #[test]
 fn rows_come_back_to_the_bit() {

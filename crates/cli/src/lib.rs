@@ -45,6 +45,8 @@ pub mod internals {
     pub use crate::ensemble::draws::normal;
     pub use crate::ensemble::item::{Item, Measured, matched};
     pub use crate::program;
+    #[cfg(feature = "parquet")]
+    pub use crate::sweep::parquet_file::{GROUP, from_csv};
     #[cfg(feature = "mpi")]
     pub use crate::sweep::wire::{pack, unpack};
     pub use crate::words::{count, flagged, several, time};

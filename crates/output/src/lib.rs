@@ -3,8 +3,6 @@
 mod csv;
 mod json;
 pub mod page;
-#[cfg(feature = "parquet")]
-pub mod parquet;
 mod place;
 pub mod plot;
 mod rowfile;

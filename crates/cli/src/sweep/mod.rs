@@ -4,6 +4,8 @@ mod curves;
 pub(super) mod file;
 mod out;
 mod parquet;
+#[cfg(feature = "parquet")]
+pub mod parquet_file;
 mod picture;
 #[cfg_attr(not(feature = "mpi"), path = "no_ranks.rs")]
 mod ranks;

@@ -50,7 +50,7 @@ pub fn finish(target: &Path, ending: Ending) -> Result<Ending> {
     }
     let rows = beside(target);
     #[cfg(feature = "parquet")]
-    twinslip_output::parquet::from_csv(
+    super::parquet_file::from_csv(
         &rows,
         target,
         &["returns", twinslip_output::ROW_CHECK],

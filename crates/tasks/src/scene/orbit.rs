@@ -266,6 +266,7 @@ pub(super) fn dense_output(rows: Option<Sampling>, picture: bool) -> &'static st
 /// tolerance.
 #[cfg(feature = "sundials")]
 pub const SECOND_METHOD: &str = "cvode-adams";
+/// The method of second opinions.
 #[cfg(not(feature = "sundials"))]
 pub const SECOND_METHOD: &str = "rodas5p";
 

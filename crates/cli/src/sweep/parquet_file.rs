@@ -5,8 +5,6 @@
 //! [`from_csv`] makes a Parquet file of it, which appears complete or not at all. Columns have Parquet's plain encoding and no
 //! compression, which all readers know.
 
-use super::write_whole_by;
-use crate::error::{Error, Result};
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
@@ -18,6 +16,8 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
 use std::path::Path;
 use std::sync::Arc;
+use twinslip::error::{Error, Result};
+use twinslip_output::write_whole_by;
 
 /// Rows of a group: readers take a group at a time, some megabytes.
 pub const GROUP: usize = 100_000;
@@ -217,7 +217,7 @@ pub fn from_csv(csv: &Path, out: &Path, counts: &[&str], words: &[&str]) -> Resu
     let mut file = File::open(csv).map_err(|error| unread(error.to_string()))?;
     let sought = file.seek(SeekFrom::Start(start));
     sought.map_err(|error| unread(error.to_string()))?;
-    let mut reader = ::csv::Reader::from_reader(file);
+    let mut reader = csv::Reader::from_reader(file);
     let header = reader
         .headers()
         .map_err(|error| unread(error.to_string()))?;
