@@ -1,6 +1,7 @@
 //! Systems from files in any units: the same points, periods and verdicts, and branches as long.
 
 use crate::command::{self, folder, number};
+use crate::common::ROOT;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use serde_json::Value;
@@ -289,7 +290,8 @@ impl Scaled {
 
 /// A model with its states and its time in units that are drawn from twelve decades.
 fn drawn(test: &str, name: &str, random: &mut ChaCha8Rng) -> Scaled {
-    let text = fs::read_to_string(format!("tests/data/models/{name}.toml")).expect("a model");
+    let text =
+        fs::read_to_string(format!("{ROOT}/tests/data/models/{name}.toml")).expect("a model");
     let model: toml::Table = text.parse().expect("TOML");
     let model = serde_json::to_value(model).expect("JSON");
     let mut unit = || 10.0_f64.powf(12.0 * (random.next_u64() as f64 / u64::MAX as f64) - 6.0);

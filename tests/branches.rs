@@ -296,7 +296,7 @@ fn an_interrupt_keeps_whole_rows_and_says_how_to_go_on() {
         "locus hopf --step-limit 1e-3 --max-points 1000000 -o {}",
         path.display()
     );
-    let child = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+    let child = crate::command::program()
         .args(long.split(' '))
         .stderr(Stdio::piped())
         .spawn()

@@ -105,7 +105,7 @@ fn talk_goes_to_standard_error() {
 
 #[test]
 fn a_reader_who_leaves_is_no_error() {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+    let mut child = crate::command::program()
         .args("integrate --driving 10 --stiffness 0.14 --until 2000".split(' '))
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())

@@ -3,7 +3,6 @@
 use crate::command;
 use crate::common::ROOT;
 use command::{folder, refused, run, twinslip};
-use std::process::Command;
 use twinslip_output::{Cell, RowWriter, TableRows};
 
 const COMMANDS: [&str; 14] = [
@@ -108,7 +107,7 @@ fn version_says_what_the_program_computes_with() {
     );
     assert!(long.out.contains("\nSUNDIALS "), "{}", long.out);
     assert_eq!(run(&["-V"]).out, format!("twinslip {version}\n"));
-    let held = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+    let held = crate::command::program()
         .arg("--version")
         .env("TWINSLIP_VECTORS", "none")
         .output()
@@ -181,7 +180,7 @@ fn help_shows_an_example_that_runs() {
             .filter_map(|line| line.trim().strip_prefix("twinslip "))
         {
             let place = folder(&format!("help-{command}"));
-            let status = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+            let status = crate::command::program()
                 .args(
                     line.replace("scenes/", &format!("{}/scenes/", ROOT))
                         .split(' '),

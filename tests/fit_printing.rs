@@ -1,6 +1,7 @@
 //! How a fit is told: on a terminal, in messages, on its page.
 
 use super::command::{folder, run};
+use crate::common::ROOT;
 use std::fs;
 
 const WORDS: &str = "fit tests/data/laboratory/basalt.txt --law slip --intervals linear --to 11690";
@@ -61,7 +62,8 @@ fn numbers_have_an_exponent_only_where_they_are_large_or_small() {
 #[test]
 fn a_normal_stress_without_its_unit_is_not_taken_in_pascals() {
     let folder = folder("fit_stress");
-    let text = fs::read_to_string("tests/data/laboratory/basalt.txt").expect("a record");
+    let text =
+        fs::read_to_string(format!("{ROOT}/tests/data/laboratory/basalt.txt")).expect("a record");
     let rows = text.split_once('\n').expect("a header").1;
     let with = |name: &str, header: &str, row: &dyn Fn([f64; 4]) -> String| {
         let cells = |line: &str| {

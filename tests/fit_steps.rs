@@ -2,6 +2,7 @@
 
 use super::command::{folder, run};
 use super::common::laboratory::Slid;
+use crate::common::ROOT;
 use serde_json::Value;
 use std::fs;
 
@@ -201,7 +202,8 @@ const GIVEN: [&str; 5] = [
 
 #[test]
 fn a_hold_is_fitted_from_its_displacement_or_by_a_program() {
-    let text = fs::read_to_string("tests/data/cases/slide-hold-slide.txt").expect("a record");
+    let text = fs::read_to_string(format!("{ROOT}/tests/data/cases/slide-hold-slide.txt"))
+        .expect("a record");
     let program = ["--program=40:0,140:1e-5", "--driving=1e-5"];
     let fit = |more: &[&str]| result("hold.csv", &text, more)["fit"].clone();
     let by_displacement = fit(&["--intervals=linear"]);
@@ -227,7 +229,9 @@ fn a_hold_is_fitted_from_its_displacement_or_by_a_program() {
 
 #[test]
 fn one_sample_before_a_step_is_enough() {
-    let text = fs::read_to_string("tests/data/cases/step-without-displacement.txt");
+    let text = fs::read_to_string(format!(
+        "{ROOT}/tests/data/cases/step-without-displacement.txt"
+    ));
     let words = [
         "--time=1",
         "--friction=2",

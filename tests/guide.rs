@@ -4,7 +4,6 @@ use crate::command;
 use crate::common::ROOT;
 use command::{folder, twinslip};
 use std::path::Path;
-use std::process::Command;
 
 /// The commands in the blocks for the shell.
 fn commands(text: &str) -> Vec<&str> {
@@ -34,7 +33,7 @@ fn run_all(lines: &[&str], place: &Path) {
                 None if word.starts_with("tests/data/") => root.join(word).display().to_string(),
                 None => (*word).to_owned(),
             });
-        let ended = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+        let ended = crate::command::program()
             .args(words)
             .current_dir(place)
             .output()

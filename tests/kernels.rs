@@ -4,7 +4,6 @@ use crate::command::twinslip;
 use crate::common::data;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-use std::process::Command;
 use twinslip::expression::{Binary, Builder, Expressions, Function};
 use twinslip::integrate::used_vectors;
 use twinslip::internals::{both_ways, columns_both_ways};
@@ -152,7 +151,7 @@ fn random_formulas_have_the_same_series_compiled() {
 /// A run of the program, compiled from the first step on, not at all, or as it is by default: the end of the run is the same.
 fn assert_same_outputs(arguments: &str) {
     let of = |compile: &str| {
-        let output = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+        let output = crate::command::program()
             .args(arguments.split_whitespace())
             .args(["-q", "--format", "csv"])
             .env("TWINSLIP_COMPILE", compile)
@@ -197,7 +196,7 @@ fn orbits_and_branches_are_the_same_to_the_last_digit_compiled() {
 
 #[test]
 fn what_is_compiled_when_is_one_of_three_words() {
-    let output = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+    let output = crate::command::program()
         .args("integrate --system lorenz --until 1".split_whitespace())
         .env("TWINSLIP_COMPILE", "never")
         .output()

@@ -1,10 +1,7 @@
-//! The tests: one binary, as most of the time that tests take to build goes into binaries. `cargo test --test tests NAME::` runs
-//! the file `tests/NAME.rs`. Those that count allocations are a binary of their own, `tests/allocations`.
-//!
-//! Tests of systems of one's own take a third of the time to compile and are the same with all features: builds with `parquet`, which test files,
-//! do without.
+//! The tests whose results are the same with all features of a build; the others are in `features.rs`. `cargo test NAME::` runs the file
+//! `tests/NAME.rs`. There are these two binaries, as most of the time that tests take to build goes into binaries, and one of the tests that
+//! count allocations, `tests/allocations`.
 #![allow(missing_docs)]
-#![cfg_attr(feature = "parquet", allow(dead_code))]
 
 // What tests share.
 mod command;
@@ -18,16 +15,11 @@ mod arcs;
 mod attraction;
 mod batch;
 mod boxes;
-#[cfg(not(feature = "parquet"))]
 mod branch_ends;
-mod branches;
 mod branches_equilibria;
 mod branches_once;
 mod branches_orbits;
 mod browser;
-mod cli_input;
-mod cli_runs;
-mod cli_words;
 mod cluster_branches;
 mod cluster_equilibria;
 mod clusters;
@@ -40,7 +32,6 @@ mod damping;
 mod damping_derivatives;
 mod derivatives;
 mod difference_chart;
-#[cfg(not(feature = "parquet"))]
 mod dimensions;
 mod double_double;
 #[cfg(unix)]
@@ -50,13 +41,9 @@ mod durability_kills;
 mod eigenvalues;
 mod ensemble;
 mod ensemble_input;
-mod equilibria;
-#[cfg(not(feature = "parquet"))]
 mod equilibria_generic;
-mod equilibria_random;
 mod estimates;
 mod events;
-mod extremes;
 mod figures_of_laws;
 mod fit;
 mod fit_command;
@@ -67,7 +54,6 @@ mod fit_steps;
 mod friction;
 mod growing_periods;
 mod guide;
-mod internals;
 mod invariant_planes;
 mod ivp;
 mod ivp_events;
@@ -80,29 +66,21 @@ mod law_bifurcations;
 mod law_parameters;
 mod lyapunov;
 mod many;
-#[cfg(not(feature = "parquet"))]
 mod many_dimensions;
 mod many_equilibria;
 mod many_methods;
-#[cfg(not(feature = "parquet"))]
 mod multiple_points;
-#[cfg(not(feature = "parquet"))]
 mod normal_forms_of_systems;
 mod numbers;
 mod options_used;
 mod orbit_kinds;
 mod orbit_rows;
-mod orbits;
-#[cfg(not(feature = "parquet"))]
 mod orbits_of_systems;
 mod oscillators;
 mod packages;
 mod page;
-#[cfg(not(feature = "parquet"))]
 mod parameters;
 mod parameters_by_name;
-#[cfg(feature = "parquet")]
-mod parquet;
 mod periodic_schur;
 mod pictures;
 mod polynomials;
@@ -111,7 +89,6 @@ mod programs;
 mod programs_input;
 mod ratios;
 mod reproduce;
-#[cfg(not(feature = "parquet"))]
 mod resonances_of_systems;
 mod rooms;
 mod rosenbrock;
@@ -121,32 +98,24 @@ mod rosenbrock_tangent;
 mod row_times;
 mod run;
 mod said;
-mod scenes;
 mod scenes_of_states;
-mod schema;
-mod scorecard;
 mod section_exponents;
 mod section_landings;
 mod section_regimes;
-#[cfg(not(feature = "parquet"))]
 mod sections_of_systems;
 mod series_of_interfaces;
 mod slip_events;
 mod solution_curves;
 mod special_points;
 mod step_ends;
-mod stress;
 mod strong_resonance;
 #[cfg(feature = "sundials")]
 mod sundials;
 mod sweep;
 mod sweep_any;
 mod sweep_basins;
-mod sweep_parts;
-mod sweep_rows;
 mod sweep_unbounded;
 mod switching;
-#[cfg(not(feature = "parquet"))]
 mod systems;
 mod tableaus;
 mod taylor;

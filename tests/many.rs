@@ -2,7 +2,6 @@
 
 use crate::command::{csv, number, object, refused_in_one_line};
 use serde_json::Value;
-use std::process::Command;
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::many::{ManyInterfaces, ManyTaylor, OneOfMany};
 use twinslip::model::Loading;
@@ -200,7 +199,7 @@ fn no_scale_of_time_is_assumed() {
 #[test]
 fn digits_do_not_depend_on_vectors_and_cores() {
     let run = |cores: &str, vectors: &str| {
-        let ended = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+        let ended = crate::command::program()
             .args("integrate --interfaces 10001 --driving 100 --stiffness 0.01 --start spread:0.5 --until 0.2 --points 5 --draw residual_strength=8e-4:1.2e-3 -q --format csv".split(' '))
             .env("RAYON_NUM_THREADS", cores)
             .env("TWINSLIP_VECTORS", vectors)

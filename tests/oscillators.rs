@@ -2,6 +2,7 @@
 //! in its order along its branch, to the digits that AUTO gives.
 
 use crate::command::{self, number};
+use crate::common::ROOT;
 use serde_json::Value;
 use std::fs;
 
@@ -56,7 +57,8 @@ fn is_known((label, value, period): &Point, known: &Value) -> bool {
 }
 
 fn is_whole(name: &str) {
-    let text = fs::read_to_string("tests/data/oscillators/known.json").expect("a file");
+    let text =
+        fs::read_to_string(format!("{ROOT}/tests/data/oscillators/known.json")).expect("a file");
     let all: Value = serde_json::from_str(&text).expect("JSON");
     let known = &all["systems"][name];
     let found = branches(name, known);
@@ -85,7 +87,8 @@ fn is_whole(name: &str) {
 }
 
 fn are_whole(chosen: impl Fn(&str) -> bool) {
-    let text = fs::read_to_string("tests/data/oscillators/known.json").expect("a file");
+    let text =
+        fs::read_to_string(format!("{ROOT}/tests/data/oscillators/known.json")).expect("a file");
     let all: Value = serde_json::from_str(&text).expect("JSON");
     let systems = all["systems"].as_object().expect("systems");
     for name in systems.keys().filter(|name| chosen(name.as_str())) {

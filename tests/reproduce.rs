@@ -284,7 +284,7 @@ fn pieces_tell_what_they_do_and_how_far_they_are() {
 fn vectors_are_in_the_manifest_and_decide_what_stands() {
     let out = folder("reproduce-vectors");
     let made = |vectors: &str| {
-        let ended = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+        let ended = crate::command::program()
             .args(["reproduce", "--only", "fig05", "--out"])
             .arg(&out)
             .env("TWINSLIP_VECTORS", vectors)
@@ -381,7 +381,7 @@ fn a_full_disk_is_one_error_and_leaves_no_half_file() {
 #[test]
 fn ctrl_c_leaves_what_is_finished_complete() {
     let out = folder("reproduce-interrupted");
-    let mut child = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+    let mut child = crate::command::program()
         .args(["reproduce", "--out", out.to_str().expect("UTF-8")])
         .stderr(std::process::Stdio::piped())
         .spawn()

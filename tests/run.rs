@@ -531,7 +531,7 @@ fn an_interrupt_keeps_finished_rows() {
             "integrate --driving 10 --stiffness 0.14 --until 1e9 --max-steps 1000000000000 --every 100 --columns time,stress -o {}",
             path.display()
         );
-        let child = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+        let child = crate::command::program()
             .args(endless.split(' '))
             .stderr(Stdio::piped())
             .spawn()

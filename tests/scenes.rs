@@ -92,7 +92,7 @@ fn shipped_scenes_are_in_the_program() {
 fn a_shipped_scene_runs_anywhere_and_a_file_goes_first() {
     let place = folder("anywhere");
     let there = |arguments: &[&str]| {
-        let ended = std::process::Command::new(env!("CARGO_BIN_EXE_twinslip"))
+        let ended = crate::command::program()
             .args(arguments)
             .current_dir(&place)
             .output()

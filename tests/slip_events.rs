@@ -4,7 +4,6 @@ use crate::command::{csv, folder, number, object, refused, refused_in_one_line, 
 use proptest::prelude::*;
 use serde_json::Value;
 use std::path::Path;
-use std::process::Command;
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::many::{ManyEvent, ManyInterfaces, ManyStep, ManyTaylor, OneOfMany, SlipEvents};
 use twinslip::model::Loading;
@@ -454,7 +453,7 @@ fn no_digit_depends_on_vectors_and_cores() {
     let at = folder("slip-events-cores");
     let run = |cores: &str, vectors: &str| {
         let (events, each) = (at.join("events.csv"), at.join("each.csv"));
-        let ended = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+        let ended = crate::command::program()
             .args("integrate --interfaces 8201 --driving 8200 --stiffness 1.2e-4 --start spread:1 --until 1 --points 2 --rtol 1e-4 --draw residual_strength=8e-4:1.2e-3 -q --force --format csv".split(' '))
             .arg("--events")
             .arg(&events)

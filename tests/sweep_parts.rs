@@ -66,7 +66,7 @@ fn a_killed_sweep_ends_in_the_same_bytes() {
             .wrapping_mul(6364136223846793005)
             .wrapping_add(1442695040888963407);
         let threads = 1 + kill % 2;
-        let mut child = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+        let mut child = crate::command::program()
             .args(resume.split(' '))
             .args(["--threads", &threads.to_string()])
             .stderr(Stdio::null())
@@ -194,7 +194,7 @@ fn an_interrupt_keeps_whole_rows_and_says_how_to_go_on() {
         "sweep --driving 0.14:0.5:2000 --stiffness 0.36:0.5:2000 -o {}",
         path.display()
     );
-    let child = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+    let child = crate::command::program()
         .args(long.split(' '))
         .stderr(Stdio::piped())
         .spawn()

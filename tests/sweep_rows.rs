@@ -4,7 +4,6 @@ use crate::command;
 use command::sweeps::{GRID, sweep, whole};
 use command::{csv, folder, object, refused_in_one_line as refused, run, twinslip};
 use std::fs;
-use std::process::Command;
 
 #[test]
 fn rows_are_those_of_the_grid_in_its_order_in_all_formats() {
@@ -88,7 +87,7 @@ fn bytes_depend_on_neither_threads_nor_words() {
 #[test]
 fn vector_instructions_change_no_verdict() {
     let with = |vectors: &str| {
-        let output = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+        let output = crate::command::program()
             .args(GRID.split_whitespace())
             .args(["-q", "--format", "csv"])
             .env("TWINSLIP_VECTORS", vectors)
@@ -262,7 +261,7 @@ fn curves_over_a_map_are_kept_and_never_trusted_blindly() {
     let cache = place.join("cache");
     let picture = place.join("map.svg");
     let draw = |cache: &str, grid: &str| {
-        let output = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+        let output = crate::command::program()
             .args(format!("sweep {grid} --curves pitchfork,hopf").split(' '))
             .args(["-o".as_ref(), place.join("map.csv").as_os_str()])
             .args(["--plot".as_ref(), picture.as_os_str()])

@@ -1,12 +1,14 @@
 //! Systems and laws whose text stands in the place of a file's name, as programs give them.
 
 use crate::command;
+use crate::common::ROOT;
 use command::{Ended, run};
 use serde_json::Value;
 use std::fs;
+use std::path::Path;
 
 fn text_of(path: &str) -> String {
-    fs::read_to_string(path).expect("a file")
+    fs::read_to_string(Path::new(ROOT).join(path)).expect("a file")
 }
 
 /// A command with one more option whose value has any letters.

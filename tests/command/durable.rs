@@ -3,7 +3,7 @@
 use super::twinslip;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
 // Quick runs.
@@ -13,7 +13,7 @@ pub const LOCUS: &str = "locus hopf -q --step-limit 0.5";
 pub const RUN: &str = "integrate -q --driving 10 --stiffness 0.14 --until 40 --rtol 1e-10";
 
 pub fn begin(arguments: &str) -> Child {
-    Command::new(env!("CARGO_BIN_EXE_twinslip"))
+    super::program()
         .args(arguments.split_whitespace())
         .stdout(Stdio::null())
         .stderr(Stdio::piped())

@@ -5,6 +5,7 @@
 pub mod durable;
 pub mod sweeps;
 
+use crate::common::ROOT;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -22,6 +23,13 @@ pub struct Ended {
     pub err: String,
 }
 
+/// The program, to be run in the folder of the repository.
+pub fn program() -> Command {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_twinslip"));
+    program.current_dir(ROOT);
+    program
+}
+
 /// Runs it with arguments separated by spaces.
 pub fn twinslip(arguments: &str) -> Ended {
     run(&arguments.split_whitespace().collect::<Vec<_>>())
@@ -33,7 +41,7 @@ pub fn run(arguments: &[&str]) -> Ended {
         status,
         stdout,
         stderr,
-    } = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+    } = program()
         .args(arguments)
         .output()
         .expect("the program starts");

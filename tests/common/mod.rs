@@ -1,6 +1,5 @@
 //! Reference data and small comparisons, shared by the tests.
 
-#[cfg(not(feature = "parquet"))]
 pub mod among;
 pub mod branches;
 pub mod heard;

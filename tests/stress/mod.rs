@@ -5,7 +5,7 @@
 //! more work than allowed. The tests here run a part of the grid; all of it, some minutes, runs with
 //!
 //! ```sh
-//! cargo test --test tests -- stress::full --ignored --nocapture
+//! cargo test --test features -- stress::full --ignored --nocapture
 //! ```
 //!
 //! which holds it to the same factors and writes `tests/stress/table.md`.
@@ -108,7 +108,7 @@ fn a_part_of_the_grid_meets_its_tolerances_or_says_why_not() {
 fn full() {
     let tally = count(&grid(), |_| &TOLERANCES);
     let text = format!(
-        "# Stress\n\nWritten by `cargo test --test tests -- stress::full --ignored`.\n\n{}\n## Long runs\n\n{}",
+        "# Stress\n\nWritten by `cargo test --test features -- stress::full --ignored`.\n\n{}\n## Long runs\n\n{}",
         tally.markdown(),
         long::table()
     );

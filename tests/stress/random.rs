@@ -11,9 +11,10 @@ fn random_scenes_meet_their_tolerance_or_say_why_not() {
     let config = Config {
         cases: 60,
         max_shrink_iters: 40,
-        failure_persistence: Some(Box::new(FileFailurePersistence::Direct(
-            "tests/stress/regressions.txt",
-        ))),
+        failure_persistence: Some(Box::new(FileFailurePersistence::Direct(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../tests/stress/regressions.txt"
+        )))),
         ..Config::default()
     };
     let rng = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
