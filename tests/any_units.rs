@@ -364,7 +364,9 @@ fn models_are_the_same_in_any_units() {
         ("wilson-cowan", "tau", 0.008, true),
     ];
     let mut random = ChaCha8Rng::seed_from_u64(50);
-    for (name, parameter, value, oscillates) in ALL {
+    // Every other one, others each time.
+    let half = crate::common::random() as usize % 2;
+    for (name, parameter, value, oscillates) in ALL.into_iter().skip(half).step_by(2) {
         let Scaled {
             file: scaled, time, ..
         } = drawn("branch", name, &mut random);

@@ -2,6 +2,7 @@
 //! are deleted meanwhile, messages that nobody reads.
 
 use crate::command;
+use crate::common::random;
 use command::durable::{BRANCH, LOCUS, RUN, SWEEP, begin, done, grown, read, special};
 use command::{contents, csv, folder, refused_in_one_line as refused, twinslip};
 use std::fs;
@@ -17,14 +18,10 @@ fn computed(arguments: &str) {
     assert!(matches!(ended.code, 0 | 3), "{arguments}: {}", ended.err);
 }
 
-fn random() -> u64 {
-    std::hash::BuildHasher::hash_one(&std::hash::RandomState::new(), 0u8)
-}
-
 /// Kills it again and again, each time on its way to the end, and goes on with what is left; in the end the bytes are those of an
 /// uninterrupted run.
 fn killed(name: &str, command: &str, files: fn(&Path) -> Vec<PathBuf>) {
-    const KILLS: u64 = 12;
+    const KILLS: u64 = 6;
     let place = folder(name);
     let [whole, torn] = ["whole.csv", "torn.csv"].map(|name| place.join(name));
     let begun = Instant::now();
@@ -58,7 +55,7 @@ fn a_killed_sweep_ends_in_the_same_bytes() {
 fn a_killed_branch_ends_in_the_same_bytes() {
     killed(
         "durable-branch",
-        &format!("{BRANCH} --step-limit 0.02"),
+        &format!("{BRANCH} --step-limit 0.04"),
         |path| vec![path.to_owned(), special(path)],
     );
 }
@@ -163,7 +160,7 @@ fn output_that_is_deleted_is_told_at_the_end() {
     let path = place.join("hopf.csv");
     for file in [path.clone(), special(&path)] {
         let child = begin(&format!(
-            "locus hopf -q --step-limit 0.05 -o {}",
+            "locus hopf -q --step-limit 0.15 -o {}",
             path.display()
         ));
         grown(&path, 3000);
@@ -267,7 +264,7 @@ fn an_interrupt_says_what_is_kept() {
         ),
     ] {
         let child = begin(&arguments);
-        std::thread::sleep(Duration::from_millis(700));
+        std::thread::sleep(Duration::from_millis(400));
         let pid = child.id().to_string();
         let sent = Command::new("kill").args(["-INT", &pid]).status();
         assert!(sent.expect("kill").success());
@@ -283,10 +280,10 @@ fn an_interrupt_says_what_is_kept() {
     assert!(!contents(&place).iter().any(temporary));
 }
 
-/// Runs of many interfaces, twenty kills each: with their events by power series, and by methods that begin anew at each checkpoint.
+/// Runs of many interfaces, killed again and again: with their events by power series, and by methods that begin anew at each checkpoint.
 #[test]
 fn a_killed_run_of_many_interfaces_ends_in_the_same_bytes() {
-    const KILLS: usize = 20;
+    const KILLS: usize = 10;
     let place = folder("durable-many");
     let methods: &[(&str, &str)] = &[
         ("taylor", "--events --participation"),
@@ -299,7 +296,7 @@ fn a_killed_run_of_many_interfaces_ends_in_the_same_bytes() {
         let command = format!(
             "integrate -q --interfaces 100 --driving 100 --stiffness 0.01 --start spread:1 --until 3 --points 200 \
              --columns time,stress,slip,slip_rate_max,state_1,slip_7 --draw residual_strength=8e-4:1.2e-3 --method {method} {also} \
-             -o {} --checkpoint {} --checkpoint-steps 10",
+             -o {} --checkpoint {} --checkpoint-steps 20",
             rows.display(),
             saved.display()
         );

@@ -186,7 +186,7 @@ fn on_a_stiff_spring_friction_is_a_closed_form() {
 
 #[test]
 fn a_clean_record_gives_its_parameters_back_from_a_start_off_by_five() {
-    clean_records_give_their_parameters_back(20, 1);
+    clean_records_give_their_parameters_back(8, 0);
 }
 
 #[test]

@@ -14,6 +14,7 @@ fn a_terminal_shows_what_was_found() {
     let shown = |more: &str| {
         let line = format!("{program} {WORDS} {more}");
         let made = std::process::Command::new("script")
+            .current_dir(ROOT)
             .args(["-qec", &line, "/dev/null"])
             .output()
             .expect("`script` of util-linux, which makes a terminal");

@@ -277,7 +277,7 @@ fn impossible_sizes_and_missing_values_are_refused() {
     });
     let file = with("metres.csv", metres);
     let ended = twinslip(&format!(
-        "fit {file} --law slip --intervals linear -o {file}.out.csv"
+        "fit {file} --law slip --intervals linear --stiffness 0.5/um -o {file}.out.csv"
     ));
     assert!(
         ended.err.contains("states no unit and is taken in m"),

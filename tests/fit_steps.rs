@@ -70,7 +70,7 @@ fn what_a_step_without_evolution_does_not_determine_has_no_value() {
         evolution_effect: 1e-9,
         ..one_step()
     };
-    let text = flat.record(5_489, 2);
+    let text = flat.record(1_001, 2);
     for intervals in ["--intervals=profile", "--intervals=linear"] {
         let found = result("flat.csv", &text, &[intervals]);
         let fit = &found["fit"];

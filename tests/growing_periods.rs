@@ -83,7 +83,12 @@ fn branches_end_at_saddle_nodes_on_the_cycle() {
     let system = case("saddle-node-on-circle");
     let asked = format!("{system} --along mu --from 1 --to -0.5 --start -1,0");
     ends_at(&asked, "mu", NAME, truth, 1e-12);
+}
 
+#[test]
+#[ignore = "takes long"]
+fn a_branch_of_a_neuron_ends_at_a_saddle_node_on_the_cycle() {
+    const NAME: &str = "saddle-node on a cycle";
     let truth = reference("morris_lecar_SNIC_phi1/15", "I_SN");
     let asked = format!("{} --along I --from 30 --to 60", case("morris-lecar"));
     ends_at(&asked, "I", NAME, truth, 1e-10);

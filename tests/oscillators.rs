@@ -10,7 +10,12 @@ use std::fs;
 const NOT_WHOLE: [&str; 4] = ["abc-reaction", "bazykin", "chua-smooth", "torus-circuit"];
 
 /// They take longest.
-const LONG: [&str; 2] = ["co-oxidation", "decroly-goldbeter"];
+const LONG: [&str; 4] = [
+    "co-oxidation",
+    "decroly-goldbeter",
+    "hindmarsh-rose",
+    "peroxidase",
+];
 
 /// A label, the parameter and the period.
 type Point = (String, f64, f64);
@@ -102,12 +107,7 @@ fn branches_of_oscillators_have_all_points_that_auto_finds() {
 }
 
 #[test]
-fn relaxation_of_co_oxidation_is_whole() {
-    is_whole("co-oxidation");
-}
-
-#[test]
 #[ignore = "takes minutes"]
-fn a_branch_with_two_dozen_folds_is_whole() {
-    is_whole("decroly-goldbeter");
+fn branches_that_take_longest_have_all_points_that_auto_finds() {
+    are_whole(|name| LONG.contains(&name));
 }

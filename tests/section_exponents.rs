@@ -90,7 +90,7 @@ fn exponents_of_periodic_orbits_are_those_of_their_multipliers() {
         }
     }
     // An orbit of three returns; the third exponent by multiple shooting at 31 digits.
-    for numerics in numerics() {
+    for numerics in &numerics()[..3] {
         let words = format!("section --driving 0.08433 --stiffness 0.14617 --lyapunov {numerics}");
         let (value, uncertainty) = exponents(&command::object(&words))[2];
         let off = (value + 0.002_595_534_446_2).abs();
@@ -103,29 +103,27 @@ fn exponents_of_periodic_orbits_are_those_of_their_multipliers() {
 /// a long and accurate run.
 #[test]
 fn the_exponents_of_a_torus_have_no_bias() {
-    for (v, k) in [(0.11, 0.185), (0.104, 0.2)] {
-        let run =
-            format!("section --driving {v} --stiffness {k} --start near-symmetric:0.3 --lyapunov");
-        let long = exponents(&command::object(&format!(
-            "{run} --returns 5000 --rtol 1e-12"
-        )))[2];
-        for numerics in numerics() {
-            let words = format!("{run} --skip 2000 --returns 2000 {numerics}");
-            let ended = command::twinslip(&format!("{words} --format json -q"));
-            let found: serde_json::Value = serde_json::from_str(&ended.out).expect("JSON");
-            let regime = found["result"]["regime"].as_str().expect("a regime");
-            // The returns of a coarse run may be too rough to tell, but never tell anything else.
-            let coarse = numerics.contains("1e-4") && regime == "undecided";
-            assert!(regime == "torus" || coarse, "{words}: {found}");
-            let all = exponents(&found);
-            for (value, uncertainty) in &all[..2] {
-                assert!(value.abs() <= *uncertainty, "{words}: {all:?}");
-            }
-            let (value, uncertainty) = all[2];
-            let off = (value - long.0).abs();
-            assert!(off <= uncertainty + long.1, "{words}: {all:?}, {long:?}");
-            assert!(uncertainty < 0.05 * value.abs(), "{words}: {all:?}");
+    let run = "section --driving 0.11 --stiffness 0.185 --start near-symmetric:0.3 --lyapunov";
+    let long = exponents(&command::object(&format!(
+        "{run} --returns 4000 --rtol 1e-12"
+    )))[2];
+    // Those whose errors are largest.
+    for numerics in &numerics()[1..3] {
+        let words = format!("{run} --skip 1500 --returns 2000 {numerics}");
+        let ended = command::twinslip(&format!("{words} --format json -q"));
+        let found: serde_json::Value = serde_json::from_str(&ended.out).expect("JSON");
+        let regime = found["result"]["regime"].as_str().expect("a regime");
+        // The returns of a coarse run may be too rough to tell, but never tell anything else.
+        let coarse = numerics.contains("1e-4") && regime == "undecided";
+        assert!(regime == "torus" || coarse, "{words}: {found}");
+        let all = exponents(&found);
+        for (value, uncertainty) in &all[..2] {
+            assert!(value.abs() <= *uncertainty, "{words}: {all:?}");
         }
+        let (value, uncertainty) = all[2];
+        let off = (value - long.0).abs();
+        assert!(off <= uncertainty + long.1, "{words}: {all:?}, {long:?}");
+        assert!(uncertainty < 0.05 * value.abs(), "{words}: {all:?}");
     }
 }
 

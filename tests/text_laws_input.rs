@@ -1,10 +1,12 @@
 //! What the commands take, draw and refuse of friction laws of one's own from files.
 
 use crate::command;
+use crate::common::ROOT;
 use crate::common::text::{law, near};
 use command::{folder, number, object, refused_in_one_line, run, twinslip};
 use serde_json::Value;
 use std::fs;
+use std::path::Path;
 
 #[test]
 fn parameters_are_set_by_flags_and_by_name() {
@@ -25,7 +27,7 @@ fn parameters_are_set_by_flags_and_by_name() {
     }
     // A scene names its law from where it stands. Not in `scenes`, which is compiled into the program: all would be built anew.
     let place = folder("law_beside_a_scene");
-    fs::copy(&file, place.join("spinodal.toml")).expect("a copy");
+    fs::copy(Path::new(ROOT).join(&file), place.join("spinodal.toml")).expect("a copy");
     let scene = place.join("scene.toml");
     let text = "command = \"integrate\"\nlaw = \"spinodal.toml\"\ndriving = 1\nset = { stiffness = 0.5 }\nuntil = 1\nfinal-only = true\nformat = \"json\"\n";
     fs::write(&scene, text).expect("a file");

@@ -69,9 +69,13 @@ fn every_error_is_within_its_estimate() {
     };
     let models = models();
     assert_eq!(models.len(), 50);
+    // Every other one, others each time.
+    let half = crate::common::random() as usize % 2;
     let runs: Vec<_> = models
         .iter()
         .flat_map(|(name, model)| methods.iter().map(move |method| (name, model, method)))
+        .skip(half)
+        .step_by(2)
         .collect();
     let wrong: Vec<String> = runs
         .par_iter()

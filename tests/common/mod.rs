@@ -26,6 +26,11 @@ pub fn data(name: &str) -> Value {
     serde_json::from_str(&text).unwrap_or_else(|e| panic!("{path}: {e}"))
 }
 
+/// Another one each time.
+pub fn random() -> u64 {
+    std::hash::BuildHasher::hash_one(&std::hash::RandomState::new(), 0u8)
+}
+
 /// A number that is written as a number or as a decimal string.
 pub fn number(value: &Value) -> f64 {
     match value {

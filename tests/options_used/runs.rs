@@ -111,7 +111,7 @@ pub fn commands() -> Vec<(&'static str, Vec<(Kind, String)>)> {
                     (Two, "--stiffness 0.14 --from 185 --to 192".to_owned()),
                     (
                         Unequal,
-                        "--stiffness 0.14 --from 229 --to 233 --set residual_strength_2=2e-3"
+                        "--stiffness 0.14 --from 231 --to 233 --set residual_strength_2=2e-3"
                             .to_owned(),
                     ),
                     (

@@ -61,6 +61,10 @@ pub fn change(command: &str, kind: Kind, option: &str) -> Option<Change> {
         _ if model(option) => return model_change(command, kind, option),
         "along" if system && command == "branch orbits" => To("a --from 1 --to 1.5"),
         "along" if system => To("s --from 9 --to 11"),
+        // Where an orbit is found at once.
+        "along" if kind == Clusters && command == "branch orbits" => {
+            With("--driving 188", "healing_time --from 99 --to 101")
+        }
         "along" => With("--driving 200", "healing_time --from 90 --to 110"),
         "at" if command == "locus hopf" => To(match kind {
             System => "r=24.8",
@@ -88,6 +92,15 @@ pub fn change(command: &str, kind: Kind, option: &str) -> Option<Change> {
         "box" if kind == Law && command.starts_with("equ") => {
             To("stress=0:5,log_state_1=-9:0,log_state_2=-9:0")
         }
+        // Along it the branch would come to a Hopf point of which nothing is known.
+        "box" if command == "branch orbits" => With(
+            if kind == Clusters {
+                "--to 187"
+            } else {
+                "--to 225"
+            },
+            "stress=0:5,log_state_1=-5:0",
+        ),
         "box" => To("stress=0:5,log_state_1=-9:0"),
         "columns" => To("time"),
         // Curves of equilibria in any parameters say it at every point, asked for or not.
@@ -99,7 +112,6 @@ pub fn change(command: &str, kind: Kind, option: &str) -> Option<Change> {
             match orbit_at(kind) {
                 "2.05" => "--at 2.05",
                 "188" => "--at 188",
-                "230" => "--at 230",
                 _ => "--at 225",
             },
             "rodas5p",
@@ -210,6 +222,7 @@ pub fn change(command: &str, kind: Kind, option: &str) -> Option<Change> {
             System => "24.8",
             Si => "2.2e-4",
             Two | Clusters if command == "branch orbits" => "190",
+            Unequal if command == "branch orbits" => "232",
             _ if command == "branch orbits" => "225",
             _ => "210",
         }),
@@ -224,7 +237,7 @@ fn orbit_at(kind: Kind) -> &'static str {
     match kind {
         System => "2.05",
         Two | Clusters => "188",
-        Unequal => "230",
+        Unequal => "231.2",
         _ => "225",
     }
 }
@@ -286,6 +299,7 @@ fn model_change(command: &str, kind: Kind, option: &str) -> Option<Change> {
         ),
         // Whether it is stable changes, which is all that there is of the stiffness.
         "stiffness" if kind == Many && command == "equilibria" => To("1e-6"),
+        "stiffness" if command == "branch orbits" => To("0.1399"),
         "stiffness" => To(if si { "5.5e9" } else { "0.15" }),
         "system" if command == "locus hopf" => To(if kind == System {
             "lorenz-84 --in a,b"

@@ -9,7 +9,7 @@ use proptest::test_runner::{Config, FileFailurePersistence, RngAlgorithm, TestRn
 #[test]
 fn random_scenes_meet_their_tolerance_or_say_why_not() {
     let config = Config {
-        cases: 60,
+        cases: 20,
         max_shrink_iters: 40,
         failure_persistence: Some(Box::new(FileFailurePersistence::Direct(concat!(
             env!("CARGO_MANIFEST_DIR"),

@@ -55,7 +55,7 @@ const BRANCH: &str =
 
 const LOCUS: &str =
     "Example, the torus bifurcations of the paper's Figs 12 and 14, with their resonances:
-  twinslip locus torus --stiffness-range 0.02,0.3 -o torus.csv --plot torus.svg";
+  twinslip locus torus --stiffness-range 0.05,0.3 -o torus.csv --plot torus.svg";
 
 const SWEEP: &str = "Example, the regimes on 40 x 40 points and their map; then on with it after it was interrupted:
   twinslip sweep --driving 0.04:0.2:40 --stiffness 0.02:0.25:40 -o map.csv --plot map.svg
