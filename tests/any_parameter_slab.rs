@@ -239,7 +239,7 @@ fn a_branch_of_orbits_goes_on_from_the_end_at_which_it_begins() {
 /// Where the way changes that the torus bifurcation goes, by both engines: in V_H and K of a law that is built in, and of the same law from a
 /// file. Hopf points lie outside of the range.
 #[test]
-#[ignore = "takes long"]
+#[ignore = "takes half a minute: .ci/run runs it"]
 fn the_chenciner_point_is_the_same_in_any_parameters() {
     const LAW: &str = r#"
 slip_rate = "gamma*sinh(tau)/(residual_strength + (1 + healing_time)*psi)^beta"

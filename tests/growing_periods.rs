@@ -86,7 +86,7 @@ fn branches_end_at_saddle_nodes_on_the_cycle() {
 }
 
 #[test]
-#[ignore = "takes long"]
+#[ignore = "takes half a minute: .ci/run runs it"]
 fn a_branch_of_a_neuron_ends_at_a_saddle_node_on_the_cycle() {
     const NAME: &str = "saddle-node on a cycle";
     let truth = reference("morris_lecar_SNIC_phi1/15", "I_SN");

@@ -90,13 +90,4 @@ impl Autoregression {
         }
         filtered.tr_mul(&filtered) * self.innovation
     }
-
-    /// The innovations of a record: what is white of it.
-    pub fn innovations(&self, record: &[f64]) -> Vec<f64> {
-        let of = |i: usize| {
-            let before = self.coefficients.iter().take(i).enumerate();
-            record[i] - before.map(|(k, c)| c * record[i - k - 1]).sum::<f64>()
-        };
-        (0..record.len()).map(of).collect()
-    }
 }

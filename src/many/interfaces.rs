@@ -21,7 +21,7 @@ use crate::model::Loading;
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct ManyInterfaces {
     pub(super) share: Share,
     pub(super) constants: Vec<Constants>,

@@ -39,12 +39,6 @@ pub enum Processes {
     Several(&'static dyn Gather),
 }
 
-impl PartialEq for Processes {
-    fn eq(&self, other: &Self) -> bool {
-        self.is_one() == other.is_one()
-    }
-}
-
 impl Processes {
     fn is_one(self) -> bool {
         matches!(self, Processes::One)
@@ -52,7 +46,7 @@ impl Processes {
 }
 
 /// The interfaces that a process holds of all.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Share {
     count: usize,
     rank: usize,

@@ -16,9 +16,7 @@ use std::time::Instant;
 use twinslip::bifurcation::{Criticality, Label};
 use twinslip::error::{Error, Result};
 use twinslip::integrate::Choice;
-use twinslip_output::{
-    self, Format, Over, ROW_CHECK, RowFile, RowWriter, Status, checked_line, plot,
-};
+use twinslip_output::{Format, Over, ROW_CHECK, RowFile, RowWriter, Status, checked_line, plot};
 use twinslip_tasks::scene::{Column, Described, OutputOptions, Quantity};
 use twinslip_tasks::views;
 

@@ -28,6 +28,7 @@ mod rows;
 mod run;
 mod section;
 mod shell;
+mod slab;
 mod special;
 mod stream;
 pub(crate) mod sweep;

@@ -1,11 +1,9 @@
 //! `twinslip locus`.
 
 use super::call::Call;
-use super::continuation::Task;
-use super::rows::{SlabRow, special_row};
-use super::{Ending, general, special};
-use std::ops::ControlFlow;
-use twinslip::bifurcation::{LocusRow, Special, orbits};
+use super::slab::SlabCurves;
+use super::{Ending, general};
+use twinslip::bifurcation::LocusRow;
 use twinslip::error::Result;
 use twinslip_tasks::scene::{
     CurveChoice, Described, LocusOptions, LocusPlan, TextModel, TextSubject, plane,
@@ -21,14 +19,8 @@ pub fn run(options: &LocusOptions, call: &Call) -> Result<Ending> {
             &options.model,
             &plane(options.plane.as_deref().unwrap_or("driving,stiffness"))?,
         )? {
-            let search = &options.search;
-            let subject = TextSubject::new(
-                model,
-                search.within.as_deref(),
-                search.start.as_deref(),
-                search.period_guess,
-                CurveChoice::named(options.of.as_deref())?.of_orbits(),
-            )?;
+            let orbits = CurveChoice::named(options.of.as_deref())?.of_orbits();
+            let subject = TextSubject::new(model, &options.search, orbits)?;
             return general::locus(options, &subject, call);
         }
         if let Some(subject) = options.any_parameter()? {
@@ -37,45 +29,27 @@ pub fn run(options: &LocusOptions, call: &Call) -> Result<Ending> {
     }
     options.search.unused()?;
     let plan = LocusPlan::new(options)?;
-    let units = plan.system.units();
-    let again = |one: &Special| {
-        let second = plan.following.second;
-        let checked = second.map(|method| orbits::crosscheck(&plan.request.slab, one, method));
-        Ok(checked.transpose()?.flatten().map(Vec::from))
-    };
     let nothing = format!(
         "no {} bifurcation is found in these ranges; give others by `driving_range` and `stiffness_range`, or other constants of the law",
         plan.curve.name
     );
-    let task = Task {
-        system: &plan.system,
+    let curves = SlabCurves {
         whole: CURVES,
         nothing: &nothing,
-        names: vec![],
-        columns: views::locus_columns(plan.system.interfaces),
-        special_columns: views::special_columns(),
-        read: (&|cell| LocusRow::read(cell, units), &|cell| {
-            special_row(cell, units)
-        }),
-        lines: &|special, checks| special::lines(special, checks, units),
-        numerics: plan.numerics.clone(),
-        second: plan.following.second.map(|second| (second, &again as _)),
-        resume: options.resume.as_ref(),
-        plot: options.plot.as_ref(),
+        system: &plan.system,
+        slab: &plan.request.slab,
+        second: plan.following.second,
+        numerics: &plan.numerics,
+        explain: &|| plan.explain(),
+        files: (options.resume.as_ref(), options.plot.as_ref()),
         output: &options.output,
         call,
     };
-    let report = task.report()?;
-    if options.output.explain {
-        call.say(plan.explain());
-    }
-    task.run(
-        &report,
-        |known, seen| {
-            plan.follow(known, &mut |event| {
-                LocusRow::found(event).map_or(ControlFlow::Continue(()), &mut *seen)
-            })
+    curves.follow(
+        views::locus_columns(plan.system.interfaces),
+        |known, seen| plan.follow(known, seen),
+        |rows: &[LocusRow], special| {
+            views::curves(rows, special, plan.curve.title, plan.system.units())
         },
-        |rows, special| views::curves(rows, special, plan.curve.title, units),
     )
 }

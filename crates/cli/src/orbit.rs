@@ -12,7 +12,7 @@ use twinslip::equilibrium::Verdict;
 use twinslip::error::{Error, Result};
 use twinslip::number::Uncertain;
 use twinslip::orbit::{Crosscheck, FoundOrbit, Kind, Multiplier, Orbit, OrbitAccuracy};
-use twinslip_output::{self, Format, RowList, plot};
+use twinslip_output::{Format, RowList, plot};
 use twinslip_tasks::scene::{
     Column, Described, OrbitOptions, OrbitPlan, Plan, Quantity, System, TextModel, TextOrbitPlan,
     Units,

@@ -12,7 +12,7 @@ use twinslip::error::{Error, Result};
 use twinslip::integrate::Work;
 use twinslip::number::Uncertain;
 use twinslip_output::{
-    self, CsvRows, Envelope, Format, Over, Place, RowFile, RowWriter, Status, TableRows, plot,
+    CsvRows, Envelope, Format, Over, Place, RowFile, RowWriter, Status, TableRows, plot,
 };
 use twinslip_tasks::scene::{Column, Described, OutputOptions, Quantity, Units};
 use twinslip_tasks::views;

@@ -31,6 +31,22 @@ pub struct Pieces<'a> {
     hears: Hears<'a>,
 }
 
+/// What a scene has computed, by kind: an error where the scene has a command of another kind.
+macro_rules! of_scenes {
+    ($($(#[$doc:meta])* $name:ident: $kind:ident($what:ty), $words:literal;)*) => {$(
+        $(#[$doc])*
+        ///
+        /// # Errors
+        /// Those of the scene; [`Error::Interrupted`].
+        pub fn $name(&self, scene: &str) -> Result<Arc<$what>> {
+            match self.piece(scene)? {
+                Piece::$kind(piece) => Ok(piece),
+                _ => Err(not(scene, $words)),
+            }
+        }
+    )*};
+}
+
 impl<'a> Pieces<'a> {
     /// None yet. Once `stop` is set, what is being computed ends with [`Error::Interrupted`].
     pub fn new(stop: &'a AtomicBool) -> Self {
@@ -55,92 +71,23 @@ impl<'a> Pieces<'a> {
         AnyLaw::Spinodal(Parameters::heslot_1994().spinodal())
     }
 
-    /// The run of a scene.
-    ///
-    /// # Errors
-    /// Those of the scene; [`Error::Interrupted`].
-    pub fn run(&self, scene: &str) -> Result<Arc<Run>> {
-        match self.piece(scene)? {
-            Piece::Run(run) => Ok(run),
-            _ => Err(not(scene, "a run")),
-        }
-    }
-
-    /// The return map of a scene.
-    ///
-    /// # Errors
-    /// As of [`Pieces::run`].
-    pub fn map(&self, scene: &str) -> Result<Arc<Map>> {
-        match self.piece(scene)? {
-            Piece::Map(map) => Ok(map),
-            _ => Err(not(scene, "a return map")),
-        }
-    }
-
-    /// The branches of a scene.
-    ///
-    /// # Errors
-    /// As of [`Pieces::run`].
-    pub fn branches(&self, scene: &str) -> Result<Arc<Branches>> {
-        match self.piece(scene)? {
-            Piece::Branches(branches) => Ok(branches),
-            _ => Err(not(scene, "a branch")),
-        }
-    }
-
-    /// The curves of a scene.
-    ///
-    /// # Errors
-    /// As of [`Pieces::run`].
-    pub fn curves(&self, scene: &str) -> Result<Arc<Curves>> {
-        match self.piece(scene)? {
-            Piece::Curves(curves) => Ok(curves),
-            _ => Err(not(scene, "a curve")),
-        }
-    }
-
-    /// The branches or curves of a scene in any parameters.
-    ///
-    /// # Errors
-    /// As of [`Pieces::run`].
-    pub fn general(&self, scene: &str) -> Result<Arc<GeneralCurves>> {
-        match self.piece(scene)? {
-            Piece::General(curves) => Ok(curves),
-            _ => Err(not(scene, "a branch or a curve in any parameters")),
-        }
-    }
-
-    /// The periodic orbit of a scene.
-    ///
-    /// # Errors
-    /// As of [`Pieces::run`].
-    pub fn orbit(&self, scene: &str) -> Result<Arc<PeriodicOrbit>> {
-        match self.piece(scene)? {
-            Piece::Orbit(orbit) => Ok(orbit),
-            _ => Err(not(scene, "an orbit")),
-        }
-    }
-
-    /// The steady states of a scene.
-    ///
-    /// # Errors
-    /// As of [`Pieces::run`].
-    pub fn equilibria(&self, scene: &str) -> Result<Arc<Equilibria>> {
-        match self.piece(scene)? {
-            Piece::Equilibria(equilibria) => Ok(equilibria),
-            _ => Err(not(scene, "the equilibria at a point")),
-        }
-    }
-
-    /// The friction law of a scene.
-    ///
-    /// # Errors
-    /// As of [`Pieces::run`].
-    pub fn law_of(&self, scene: &str) -> Result<Arc<Laws>> {
-        match self.piece(scene)? {
-            Piece::Law(law) => Ok(law),
-            _ => Err(not(scene, "a law")),
-        }
+    of_scenes! {
+        /// The run of a scene.
+        run: Run(Run), "a run";
+        /// The return map of a scene.
+        map: Map(Map), "a return map";
+        /// The branches of a scene.
+        branches: Branches(Branches), "a branch";
+        /// The curves of a scene.
+        curves: Curves(Curves), "a curve";
+        /// The branches or curves of a scene in any parameters.
+        general: General(GeneralCurves), "a branch or a curve in any parameters";
+        /// The periodic orbit of a scene.
+        orbit: Orbit(PeriodicOrbit), "an orbit";
+        /// The steady states of a scene.
+        equilibria: Equilibria(Equilibria), "the equilibria at a point";
+        /// The friction law of a scene.
+        law_of: Law(Laws), "a law";
     }
 
     /// The processor time that the piece of a scene took; `None` if nobody asked for it.
@@ -152,7 +99,7 @@ impl<'a> Pieces<'a> {
     /// Computes the piece of a scene, if that is not done yet.
     ///
     /// # Errors
-    /// As of [`Pieces::run`].
+    /// Those of the scene; [`Error::Interrupted`].
     pub fn compute(&self, scene: &str) -> Result<()> {
         self.piece(scene).map(|_| ())
     }

@@ -9,7 +9,7 @@ use crate::written;
 use serde_json::{Map, Value};
 use std::io::{self, Write};
 use twinslip::error::Result;
-use twinslip_output::{self, Cell, CsvRows, Format, Over, Place, RowFile, RowWriter, Status};
+use twinslip_output::{Cell, CsvRows, Format, Over, Place, RowFile, RowWriter, Status};
 
 /// The estimate with what is added, and where it goes.
 pub struct Finished<'a> {

@@ -8,9 +8,7 @@ use std::io::{BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom};
 use std::path::Path;
 use twinslip::error::{Error, Result};
 use twinslip::sweep::SweepRow;
-use twinslip_output::{
-    self, Head, ROW_CHECK, Status, checked_cells, checked_line, damage, shortest,
-};
+use twinslip_output::{Head, ROW_CHECK, Status, checked_cells, checked_line, damage, shortest};
 use twinslip_tasks::scene::{Column, Described, Quantity, Shard, SweepPlan};
 use twinslip_tasks::views;
 

@@ -166,21 +166,6 @@ impl TextSystem {
         all
     }
 
-    /// The rates over a box.
-    pub fn rates_within(&self, x: &[Interval]) -> Vec<Interval> {
-        self.rates(x)
-    }
-
-    /// The Jacobian over a box, row by row.
-    pub fn jacobian_within(&self, x: &[Interval]) -> Vec<Interval> {
-        self.jacobian(x)
-    }
-
-    /// The rates in 31 digits.
-    pub fn rates_exactly(&self, x: &[DoubleDouble]) -> Vec<DoubleDouble> {
-        self.rates(x)
-    }
-
     fn second_derivative(&self, [y, u, v]: [&[f64]; 3]) -> Vec<f64> {
         // f(y + a u + b v), differentiated in a and in b.
         let of = |i: usize| Jet {

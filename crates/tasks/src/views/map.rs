@@ -2,8 +2,8 @@
 
 use crate::scene::{Quantity, SectionPlan};
 use crate::views;
+use twinslip_output::RowList;
 use twinslip_output::plot::{Axis, Panel, PlotSeries};
-use twinslip_output::{self, RowList};
 
 /// Slip rates that differ by more than this factor are drawn on logarithmic axes.
 const DECADES: f64 = 30.0;

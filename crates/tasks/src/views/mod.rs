@@ -2,7 +2,7 @@
 
 use crate::scene::{CellValue, Column, Quantity, Units};
 use serde_json::{Map, Value, json};
-use twinslip_output::{self, Cell};
+use twinslip_output::Cell;
 
 mod bifurcation;
 mod catalogue;

@@ -7,8 +7,8 @@ use crate::scene::{
 };
 use Quantity::Number;
 use twinslip::orbit::Orbit;
+use twinslip_output::RowList;
 use twinslip_output::plot::{Axis, Drawing, Panel, PlotSeries, Stroke};
-use twinslip_output::{self, RowList};
 
 /// The columns of the steady-state friction of a law from a file: those of a law that is built in, and error budgets.
 pub fn text_law_columns(two: bool) -> Vec<Column<TextLawPoint>> {

@@ -1,6 +1,7 @@
 //! A system of one's own, to be continued in any of its parameters.
 
 use super::{RowKind, Subject};
+use crate::scene::continuation::SearchOptions;
 use crate::scene::following;
 use crate::scene::system::Described;
 use crate::scene::text::{SearchPlace, TextEquilibriaPlan, TextModel, TextSlab, orbit_start};
@@ -51,14 +52,10 @@ impl TextSubject {
     ///
     /// # Errors
     /// Those of the box and of the start.
-    pub fn new(
-        model: TextModel,
-        within: Option<&str>,
-        start: Option<&str>,
-        period: Option<f64>,
-        orbits: bool,
-    ) -> Result<Self> {
-        let period = period
+    pub fn new(model: TextModel, search: &SearchOptions, orbits: bool) -> Result<Self> {
+        let (within, start) = (search.within.as_deref(), search.start.as_deref());
+        let period = search
+            .period_guess
             .map(|period| positive("period-guess", period))
             .transpose()?;
         let orbit = match start.filter(|_| orbits) {

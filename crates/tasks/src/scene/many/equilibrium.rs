@@ -17,7 +17,7 @@ use twinslip::many::{
 use twinslip::model::Loading;
 
 /// A steady state that is asked for, checked.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct ManyEquilibriumPlan {
     /// What slides.
     pub interfaces: ManyInterfaces,

@@ -23,7 +23,7 @@ use twinslip::model::Loading;
 use twinslip::sundials::MultistepMethod;
 
 /// A run of many interfaces, checked.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct ManyPlan {
     /// What slides.
     pub interfaces: ManyInterfaces,
