@@ -78,7 +78,7 @@ fn um_comma(t: f64, x: f64, mu: f64) -> Vec<String> {
 #[test]
 fn units_numbers_and_names_of_laboratories_are_read() {
     let folder = folder("fit_records");
-    let files: [(&str, &str, &str, Cells); 21] = [
+    let files: [(&str, &str, &str, Cells); 23] = [
         ("suffix", "time_s,displacement_um,friction\n", ",", um),
         ("mm", "t_s,LP_disp_mm,mu\n", ",", |t, x, mu| {
             shown(&[t, x * 1e3, mu])
@@ -187,6 +187,13 @@ fn units_numbers_and_names_of_laboratories_are_read() {
             "\t",
             |t, x, mu| shown(&[t, 3.0, x * 1e6, mu]),
         ),
+        (
+            "ratio",
+            "time (s);load point displacement (um);shear/normal\n",
+            ";",
+            um,
+        ),
+        ("symbols", "t [s];lp [um];tau/sigma_n\n", ";", um),
         (
             "down",
             "time_s,displacement_um,friction\n",

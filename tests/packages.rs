@@ -130,6 +130,29 @@ fn all_features_share_one_build_of_the_models() {
     }
 }
 
+/// Else `./test` compiles again what `./reproduce` has built, and so does every command for one package alone.
+#[test]
+fn tests_share_the_build_of_the_command() {
+    let command = tree("{p} [{f}]", &["--edges", "normal,build"]);
+    let all = &["--workspace", "--exclude", "twinslip-python"];
+    let tests = tree(
+        "{p} [{f}]",
+        &[&["--edges", "normal,build,dev"], all as &[_]].concat(),
+    );
+    let alone = ["--edges", "normal,build", "--package", "twinslip-cli"];
+    for (which, other) in [("tests", tests), ("alone", tree("{p} [{f}]", &alone))] {
+        let ours = command.iter().filter(|line| line.contains(ROOT));
+        let again: Vec<_> = ours.filter(|&line| !other.contains(line)).collect();
+        assert_eq!(again, [""; 0], "{which}");
+    }
+    assert!(
+        command
+            .iter()
+            .any(|line| line.starts_with("twinslip-tasks ")),
+        "{command:?}"
+    );
+}
+
 /// Else whoever builds both compiles all twice.
 #[test]
 #[ignore = "needs the packages of the Python package, which `cargo fetch --locked` downloads"]

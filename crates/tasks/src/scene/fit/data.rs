@@ -91,12 +91,17 @@ impl Measured {
             .as_deref()
             .ok_or_else(|| Error::Input("`data`: the file of the record is missing".into()))?;
         let table = Table::read(path)?;
-        let find =
-            |asked: &Option<String>, option: &str, names: &[&str], others: &[&str]| match asked {
-                Some(column) => table.asked(option, column).map(Some),
-                None => Ok(table.like(names, others)),
+        let mut taken = Vec::new();
+        let mut find = |asked: &Option<String>, option: &str, names: &[&str], others: &[&str]| {
+            let found = match asked {
+                Some(column) => Some(table.asked(option, column)?),
+                None => table.like(names, others, &taken),
             };
+            taken.extend(found);
+            Ok::<_, Error>(found)
+        };
         let time = find(&options.time, "time", TIMES, &[])?;
+        // Before the normal stress: `shear/normal` has both names.
         let friction = find(&options.friction, "friction", FRICTIONS, &[])?;
         let asked = &options.displacement;
         let displacement = find(asked, "displacement", DISPLACEMENTS, ACROSS)?;

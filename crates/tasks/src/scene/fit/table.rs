@@ -139,10 +139,11 @@ impl Table {
     }
 
     /// The first column that has one of these names, or one that begins with it, or else the only one that has it in its name, but
-    /// for names with one of `others` in them.
-    pub fn like(&self, names: &[&str], others: &[&str]) -> Option<usize> {
+    /// for names with one of `others` in them, and for columns that something else was found in.
+    pub fn like(&self, names: &[&str], others: &[&str], taken: &[usize]) -> Option<usize> {
         let plain: Vec<[String; 2]> = self.headings.iter().map(Heading::plain_names).collect();
-        let place = |is: &dyn Fn(&String) -> bool| plain.iter().position(|own| own.iter().any(is));
+        let free = || (0..plain.len()).filter(|at| !taken.contains(at));
+        let place = |is: &dyn Fn(&String) -> bool| free().find(|&at| plain[at].iter().any(is));
         let same = names.iter().find_map(|name| place(&|own| own == name));
         let long = || names.iter().filter(|name| name.len() > 2);
         let is_other = |own: &String| others.iter().any(|other| own.contains(other));
@@ -151,7 +152,7 @@ impl Table {
         let within = || {
             let has =
                 |[own, _]: &[String; 2]| long().any(|name| own.contains(name)) && !is_other(own);
-            let mut all = (0..plain.len()).filter(|&i| has(&plain[i]));
+            let mut all = free().filter(|&at| has(&plain[at]));
             all.next().filter(|_| all.next().is_none())
         };
         same.or_else(begins).or_else(within)
