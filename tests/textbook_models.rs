@@ -11,8 +11,8 @@ use std::collections::BTreeMap;
 const NO_ESTIMATE: [&str; 2] = ["seismic-damper", "stribeck-belt"];
 /// The default absolute tolerance is larger than the states, in mol/L: the estimate says so.
 const NO_DIGIT: &str = "enzyme-mm";
-/// Orbits of more than ten seconds, in a search that is not for stiff systems of three and more variables.
-const SLOW_ORBITS: [&str; 3] = ["hastings-powell", "hindmarsh-rose", "tyson-cell-cycle"];
+/// Its orbit, one of a family of a stiff system, takes a minute.
+const SLOW_ORBIT: &str = "tyson-cell-cycle";
 /// Estimates are below this part of a state's size, but for methods of low order on long runs.
 const SHARP: f64 = 1e-4;
 const LESS_SHARP: f64 = 0.1;
@@ -84,28 +84,37 @@ fn every_error_is_within_its_estimate() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+/// Whether the period of a model's orbit is off its reference by more than its bound, or the bound is wide: in words.
+fn period_off(name: &str, model: &Value) -> Option<String> {
+    let run = format!("orbit --system tests/data/models/{name}.toml --crosscheck none");
+    let (period, own) = (number(model, "/period/0"), number(model, "/period/1"));
+    let Some(made) = made(&run) else {
+        return Some(format!("no orbit: {run}"));
+    };
+    let told = number(&made, "/result/orbit/period/value");
+    let within = number(&made, "/result/orbit/period/uncertainty");
+    let holds = (told - period).abs() <= within + own * period && within < SHARP * period;
+    (!holds).then(|| format!("T = {told} ± {within:e} for {period}: {run}"))
+}
+
 #[test]
 fn those_that_oscillate_have_their_periods() {
     let models = models();
-    let quick = |name: &String| !SLOW_ORBITS.contains(&name.as_str());
     let all: Vec<_> = models
         .iter()
-        .filter(|(name, model)| model.get("period").is_some() && quick(name))
+        .filter(|(name, model)| model.get("period").is_some() && *name != SLOW_ORBIT)
         .collect();
-    assert!(all.len() >= 25, "{}", all.len());
+    assert!(all.len() >= 29, "{}", all.len());
     let wrong: Vec<String> = all
         .par_iter()
-        .filter_map(|(name, model)| {
-            let run = format!("orbit --system tests/data/models/{name}.toml --crosscheck none");
-            let (period, own) = (number(model, "/period/0"), number(model, "/period/1"));
-            let Some(made) = made(&run) else {
-                return Some(format!("no orbit: {run}"));
-            };
-            let told = number(&made, "/result/orbit/period/value");
-            let within = number(&made, "/result/orbit/period/uncertainty");
-            let holds = (told - period).abs() <= within + own * period && within < SHARP * period;
-            (!holds).then(|| format!("T = {told} ± {within:e} for {period}: {run}"))
-        })
+        .filter_map(|(name, model)| period_off(name, model))
         .collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// What is conserved makes Newton's equations singular: corrections would wander along the family.
+#[test]
+#[ignore = "takes a minute: .ci/run runs it"]
+fn an_orbit_of_a_stiff_system_that_conserves_has_its_period() {
+    assert_eq!(period_off(SLOW_ORBIT, &models()[SLOW_ORBIT]), None);
 }

@@ -92,6 +92,8 @@ const CLOSED: f64 = 4e-15;
 const NOISE: f64 = 1e-6;
 /// The largest correction that is trusted whole.
 const TRUSTED: f64 = 0.5;
+/// The largest correction, of minimum norm, with which a shooting is near an orbit of a family.
+const NEAR_FAMILY: f64 = 1e-4;
 /// Times that a correction is halved because the flow fails.
 const HALVINGS: usize = 8;
 
@@ -180,6 +182,10 @@ fn close_alone(tracer: &mut Tracer, field: &AnyField<'_>, guess: ShootingNodes) 
                 in_family: false,
             });
         }
+        // In a family corrections wander along it, by what is rounded.
+        if size > last && part == 1.0 && is_near_family(&linear, &shooting) {
+            return Err(failed(size));
+        }
         last = size;
         part = (TRUSTED / of_nodes.max(stretch)).min(1.0);
         let mut halvings = 0;
@@ -212,6 +218,15 @@ fn sizes(shooting: &ShootingNodes, nodes: &[Vector], durations: &[f64]) -> (f64,
     (of_nodes, of_period)
 }
 
+/// Whether a correction of minimum norm exists, as in a family, and is small.
+fn is_near_family(linear: &Linear, shooting: &ShootingNodes) -> bool {
+    let correction = linear.correction_in_family(&linear.gaps);
+    correction.is_some_and(|(nodes, durations)| {
+        let (of_nodes, of_period) = sizes(shooting, &nodes, &durations);
+        of_nodes.max(of_period) < NEAR_FAMILY
+    })
+}
+
 /// Closes a nearly closed shooting on an orbit of a family, where Newton's equations are singular, by minimum-norm corrections. `None` for an
 /// isolated orbit, or if it does not converge.
 pub(super) fn close_in_family(
@@ -219,11 +234,10 @@ pub(super) fn close_in_family(
     field: &AnyField<'_>,
     guess: &ShootingNodes,
 ) -> Option<Closed> {
-    /// A guess is that near, and what is left of the corrections.
-    const NEAR: f64 = 1e-4;
+    /// What is left of the corrections.
     const LEFT: f64 = 1e-11;
     let mut shooting = guess.clone();
-    let mut last = NEAR;
+    let mut last = NEAR_FAMILY;
     for iterations in 1..=ITERATIONS {
         let linear = Linear::new(tracer, field, &shooting).ok()?;
         let (nodes, durations) = linear.correction_in_family(&linear.gaps)?;
