@@ -351,6 +351,37 @@ fn branches_of_degenerate_hopf_points_are_vertical() {
     }
 }
 
+/// x'' = p x' - x - x^3: all orbits exist at p = 0, also where the system comes from a file.
+#[test]
+fn branches_of_conservative_systems_from_files_are_vertical() {
+    let text = "name = \"undamped at 0\"
+states = [\"x\", \"y\"]
+[parameters]
+p = -0.5
+[rates]
+x = \"y\"
+y = \"p*y - x - x^3\"
+[start]
+x = 0.0
+y = 0.0
+";
+    let file = crate::common::text::file("vertical-of-file", text);
+    let ended = crate::command::twinslip(&format!(
+        "branch orbits --system {file} --along p --from -0.5 --to 0.5 --format json -q"
+    ));
+    assert!([0, 3].contains(&ended.code), "{}", ended.err);
+    let made: serde_json::Value = serde_json::from_str(&ended.out).expect("JSON");
+    let special = made["result"]["special"].as_array().expect("a list");
+    let end = special.last().expect("an end");
+    assert_eq!(end["label"], "EP", "{end}");
+    let note = end["note"].as_str().expect("a note");
+    assert!(note.starts_with("vertical branch: on "), "{note}");
+    let [at, off] = ["/p/value", "/p/uncertainty"].map(|name| crate::command::number(end, name));
+    assert!(at.abs() <= off && off < 1e-8, "{at:e} +- {off:e}");
+    let rows = made["result"]["rows"].as_array().expect("rows");
+    assert!(rows.len() < 80, "{}", rows.len());
+}
+
 /// No fold without a turn: next to a Hopf point that is nearly degenerate K falls, at first by less than what the continuation errs by.
 #[test]
 fn a_fold_is_told_of_only_where_the_parameter_turns() {

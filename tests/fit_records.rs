@@ -292,3 +292,27 @@ fn impossible_sizes_and_missing_values_are_refused() {
         ended.err
     );
 }
+
+/// Friction that is noise answers to no step: what its steps suggest is beyond the law, and that is what is said.
+#[test]
+fn a_record_without_a_response_is_told_as_such() {
+    let rows = (0..4000).map(|i| {
+        let t = 0.1 * f64::from(i);
+        let x = t.min(200.0) + 10.0 * (t - 200.0).max(0.0);
+        let noise = 5e-4 * (12.9898 * f64::from(i)).sin() * (78.233 * f64::from(i)).cos();
+        format!("{t},{x},{}\n", 0.6 + noise)
+    });
+    let text = rows.fold(
+        "time_s,displacement_um,friction\n".to_owned(),
+        |all, row| all + &row,
+    );
+    let file = folder("no-response").join("record.csv");
+    fs::write(&file, text).expect("a file");
+    let ended = twinslip(&format!("fit {}", file.display()));
+    assert_eq!(ended.code, 1, "{}", ended.err);
+    assert!(
+        ended.err.contains("no response to them above its noise"),
+        "{}",
+        ended.err
+    );
+}

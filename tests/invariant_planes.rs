@@ -59,6 +59,155 @@ fn a_heteroclinic_cycle_is_followed_by_every_method() {
     }
 }
 
+/// Rosenzweig & MacArthur: the prey falls below the least double in every turn and comes back; in logarithms too.
+const PREY: &str = "name = \"prey\"
+states = [\"x\", \"y\"]
+[parameters]
+K = 100.0
+[rates]
+x = \"x*(1 - x/K) - x*y/(1 + x)\"
+y = \"x*y/(1 + x) - 0.1*y\"
+[start]
+x = 1.0
+y = 1.0
+";
+const PREY_IN_LOGARITHMS: &str = "name = \"prey in logarithms\"
+states = [\"u\", \"v\"]
+[parameters]
+K = 100.0
+[rates]
+u = \"1 - exp(u)/K - exp(v)/(1 + exp(u))\"
+v = \"exp(u)/(1 + exp(u)) - 0.1\"
+[start]
+u = 0.0
+v = 0.0
+";
+
+/// At t = 20000 the three competitors are 1, e^-1653.927 and e^-322.2332; y has been back from e^-897 before.
+#[test]
+fn what_sinks_below_the_least_double_comes_back() {
+    for method in ["auto", "taylor", "rodas5p", "cvode-bdf"] {
+        if method.starts_with("cvode") && !cfg!(feature = "sundials") {
+            continue;
+        }
+        let end = last(&format!(
+            "{MAY_LEONARD} --until 20000 --method {method} --rtol 1e-10 --estimate-error"
+        ));
+        let [x, y, z] = ["/x", "/y", "/z"].map(|name| number(&end, name));
+        assert_close(x, 1.0, 1e-9, method);
+        assert_eq!(y, 0.0, "{method}");
+        assert!((z.ln() + 322.233_17).abs() < 1e-3, "{method}: {z:e}");
+        let off = number(&end, "/z_uncertainty");
+        assert!(
+            (z - 1.146_2e-140).abs() < off + 1e-143,
+            "{method}: {z:e} ± {off:e}"
+        );
+    }
+    let prey = crate::common::text::file("sunken-prey", PREY);
+    let end = last(&format!(
+        "--system {prey} --until 1450 --rtol 1e-11 --estimate-error"
+    ));
+    let logs = crate::common::text::file("sunken-prey-logs", PREY_IN_LOGARITHMS);
+    let exact = last(&format!(
+        "--system {logs} --until 1450 --rtol 1e-13 --method taylor"
+    ));
+    for (state, log) in [("/x", "/u"), ("/y", "/v")] {
+        let made = number(&end, state).ln();
+        assert!((made - number(&exact, log)).abs() < 1e-5, "{state}: {made}");
+    }
+}
+
+#[test]
+fn orbits_and_sections_go_where_a_state_is_below_the_least_double() {
+    let prey = crate::common::text::file("sunken-prey-orbit", PREY);
+    let made = object(&format!("orbit --system {prey} --crosscheck none"));
+    let orbit = &made["result"]["orbit"];
+    let [period, off] = ["/period/value", "/period/uncertainty"].map(|name| number(orbit, name));
+    assert!(
+        (period - 1496.560_244_056_4).abs() <= off + 2e-9,
+        "{period} ± {off}"
+    );
+    assert!(off < 1e-6);
+    let map = object(&format!(
+        "section --system {prey} --surface x=1 --returns 20 --skip 2"
+    ));
+    assert_eq!(map["result"]["regime"], "periodic", "{}", map["result"]);
+    // Each turn around the cycle of saddles takes (0.3/0.2)^3 as long as the one before.
+    let ended = command::twinslip(&format!(
+        "section {MAY_LEONARD} --surface x=0.3 --returns 12 --skip 0 --format json -q"
+    ));
+    let made: Value = serde_json::from_str(&ended.out).expect("JSON");
+    let rows = made["result"]["rows"].as_array().expect("rows");
+    let time = |i: usize| rows[i]["time"].as_f64().expect("a time");
+    assert_eq!(rows.len(), 12, "{}", ended.err);
+    let ratio = (time(11) - time(10)) / (time(10) - time(9));
+    assert!((ratio - 3.375).abs() < 1e-3, "{ratio}");
+}
+
+/// The unit of a state that is followed by its logarithm stays: of what has died out nothing is left to err by.
+#[test]
+fn what_dies_out_for_good_is_known_to_be_small() {
+    let text = "name = \"dying out\"
+states = [\"x\", \"y\"]
+[rates]
+x = \"abs(x) + x*y\"
+y = \"2*y + y*x - 0.693*y\"
+[start]
+x = -0.718
+y = -1.478
+";
+    let file = crate::common::text::file("dying-out", text);
+    let end = last(&format!("--system {file} --until 10 --estimate-error"));
+    assert_eq!(number(&end, "/x"), 0.0);
+    let off = number(&end, "/x_uncertainty");
+    assert!(off < 1e-12, "{off:e}");
+}
+
+/// The formulas do not show what tan(x) is over x: what is lost there is told.
+#[test]
+fn what_cannot_be_followed_below_the_least_double_is_told() {
+    let text = "name = \"odd\"
+states = [\"x\", \"s\"]
+[rates]
+x = \"tan(x)*(s - 800)/400\"
+s = \"1\"
+[start]
+x = 0.5
+s = 0.0
+";
+    let file = crate::common::text::file("sunken-odd", text);
+    for method in ["taylor", "rodas5p"] {
+        let run = format!("integrate --system {file} --until 1599 --method {method} --final-only");
+        let ended = command::twinslip(&run);
+        assert_eq!(ended.code, 1, "{run}: {}{}", ended.out, ended.err);
+        let told = "variable 1 fell below 2.2e-308, the least double, and grows again";
+        assert!(ended.err.contains(told), "{run}: {}", ended.err);
+    }
+    // As long as it is as good as 0, nothing is lost.
+    last(&format!("--system {file} --until 800"));
+}
+
+/// y = 0.5 e^(t (t - 1600)/800) goes down to e^-800 and comes back, whatever else sinks: the formulas do not show what tan(x) is over x.
+#[test]
+fn what_cannot_be_followed_does_not_stand_in_the_way_of_others() {
+    let text = "name = \"odd and even\"
+states = [\"x\", \"y\", \"s\"]
+[rates]
+x = \"-tan(x)\"
+y = \"y*(s - 800)/400\"
+s = \"1\"
+[start]
+x = 0.5
+y = 0.5
+s = 0.0
+";
+    let file = crate::common::text::file("sunken-odd-and-even", text);
+    let end = last(&format!("--system {file} --until 1500 --rtol 1e-11"));
+    assert_eq!(number(&end, "/x"), 0.0);
+    let off = number(&end, "/y").ln() - (0.5_f64.ln() - 187.5);
+    assert!(off.abs() < 1e-6, "{off:e}");
+}
+
 #[test]
 fn a_heteroclinic_cycle_is_no_steady_state() {
     let ended = command::twinslip(&format!(

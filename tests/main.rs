@@ -59,6 +59,7 @@ mod ivp;
 mod ivp_events;
 mod ivp_formulas;
 mod ivp_solutions;
+mod jacobian_differences;
 #[cfg(target_arch = "x86_64")]
 mod kernels;
 mod lanes;

@@ -51,6 +51,7 @@ fn a_root_ends_the_run_at_its_branch_point() {
         "--method taylor",
         "--rtol 1e-12 --atol 1e-12",
         "--rtol 1e-4 --atol 1e-4",
+        "--method rodas5p",
     ] {
         let ended = twinslip(&format!(
             "integrate --system tests/data/cases/torricelli.toml --until 3 {options}"
@@ -439,5 +440,66 @@ fn a_diode_that_conducts_within_a_step_is_seen() {
     for method in ["auto", "taylor", "rodas5p"] {
         let run = format!("rectifier.toml --until 0.1 --method {method}");
         ends_at(&run, &[("v", 7.624_874_019_760_679)], 1e-5);
+    }
+}
+
+/// The tighter run of an estimate also goes past where |x + y|^1.3 is 0, and past where a root that does not count there is: the lesser of two.
+#[test]
+fn estimates_are_made_where_powers_pass_zero() {
+    let power = "name = \"power\"
+states = [\"x\", \"y\"]
+[rates]
+x = \"y*y - 0.837*x\"
+y = \"abs(x + y)^1.3 - 1.99*y\"
+[start]
+x = 0.0
+y = -0.741
+";
+    let root = "name = \"root\"
+states = [\"x\", \"y\"]
+[rates]
+x = \"max(sqrt(0.1 + abs(x + y)), abs(2*y)^0.5)\"
+y = \"x\"
+[start]
+x = 1.838
+y = -1.722
+";
+    for (name, text) in [("power-past-zero", power), ("lesser-root", root)] {
+        let file = file(name, text);
+        for method in ["taylor", "rodas5p"] {
+            let made = object(&format!(
+                "integrate --system {file} --until 5 --method {method} --final-only --estimate-error"
+            ));
+            let estimate = &made["result"]["final"]["error_estimate"];
+            assert!(
+                estimate.as_f64().is_some_and(|x| x < 1e-5),
+                "{name} by {method}: {estimate}"
+            );
+        }
+    }
+}
+
+/// Where a root of what is 0 for a stretch has no derivative implicit methods need none.
+#[test]
+fn implicit_methods_go_where_roots_are_zero() {
+    let text = "name = \"root of nothing\"
+states = [\"x\", \"y\"]
+[rates]
+x = \"sqrt(max(0, y - 1)) - x\"
+y = \"1\"
+[start]
+x = 1.0
+y = 0.0
+";
+    let file = file("root-of-nothing", text);
+    for method in ["rodas5p", "rodas4", "rosenbrock23", "cvode-bdf"] {
+        if method.starts_with("cvode") && !cfg!(feature = "sundials") {
+            continue;
+        }
+        let made = object(&format!(
+            "integrate --system {file} --until 0.9 --method {method} --final-only"
+        ));
+        let x = number(&made, "/result/final/x");
+        assert!((x - (-0.9_f64).exp()).abs() < 1e-6, "{method}: {x}");
     }
 }

@@ -205,7 +205,11 @@ fn best_start<const N: usize>(
     if ranked.is_empty() {
         // What is in the way of the first says most.
         for start in starts {
-            thin.friction(&thin.variables(start))?;
+            thin.friction(&thin.variables(start)).map_err(|error| {
+                let advice = "the values that the steps of the record suggest are beyond the law's range, as where its friction shows no \
+                              response to them above its noise: give values to start from, or another record";
+                error.advising(advice)
+            })?;
         }
     }
     let mut evaluations = starts.len();

@@ -2,11 +2,15 @@
 //!
 //! They are measured along a run, by how far each state moves and how fast, and are powers of two: numbers come back without rounding.
 
-use super::{AnyField, AnyIntegrator, AnyStep, Choice, Control, Tolerances};
+mod seen;
+
+use super::static_field::SUNKEN;
+use super::{AnyField, AnyIntegrator, AnyStep, Choice, Tolerances};
 use crate::error::{Error, Result};
-use crate::field::{Matrix, Vector};
+use crate::field::Vector;
 use crate::model::TextSystem;
-use crate::number::{Uncertain, eigenvalues, eigenvector};
+use crate::number::{Uncertain, eigenvalues};
+use seen::Seen;
 use std::borrow::Cow;
 
 /// The units of the states and of time.
@@ -16,6 +20,8 @@ pub struct MotionUnits {
     pub sizes: Vec<f64>,
     /// Of time.
     pub time: f64,
+    /// The signs of the states that are followed by their logarithms, and 0 of the others.
+    pub signs: Vec<f64>,
 }
 
 /// Steps of a run that is watched, in its second half.
@@ -38,6 +44,15 @@ impl MotionUnits {
         MotionUnits {
             sizes: vec![1.0; count],
             time: 1.0,
+            signs: vec![0.0; count],
+        }
+    }
+
+    fn new(sizes: Vec<f64>, time: f64) -> Self {
+        MotionUnits {
+            signs: vec![0.0; sizes.len()],
+            sizes,
+            time,
         }
     }
 
@@ -59,6 +74,34 @@ impl MotionUnits {
         let mut growth = third.sizes.iter().zip(&second.sizes);
         let grows = growth.any(|(new, old)| new / old > GROWN);
         Ok(if grows { first } else { third })
+    }
+
+    /// The same, with the logarithms of states that are factors of their own rates and, in a run from here, sink to where rounding of what they were
+    /// is larger than they are, and grow again by as much.
+    ///
+    /// # Errors
+    /// Those of the field.
+    pub fn measured_or_logarithmic(system: &TextSystem, start: &Vector) -> Result<Self> {
+        let units = Self::measured(system, start)?;
+        let has = system.have_logarithms();
+        if !has.contains(&true) {
+            return Ok(units);
+        }
+        let field = units.field(system)?;
+        let (seen, end) = units.seen(&field, start, FOREVER)?;
+        let is_lost = |end: &Result<Vector>| matches!(end, Err(Error::Underflow { .. }));
+        let is_low = |i: usize| has[i] && start[i] != 0.0 && units.is_sunken(i, seen.last[i]);
+        let sinks = is_lost(&end)
+            || (0..has.len()).any(is_low) && {
+                // Whether it comes back a longer run shows.
+                let tolerances = Tolerances::equal(ROUGH)?;
+                let mut integrator = AnyIntegrator::new(Choice::Auto, tolerances, 10 * STEPS)?;
+                is_lost(&integrator.flow(&field, (0.0, FOREVER), &units.inward(start), None))
+            };
+        let far = |i: usize| sinks || seen.risen[i] * f64::EPSILON > 1.0;
+        let which = |i: usize| has[i] && far(i);
+        let logarithmic = units.in_logarithms(start.as_slice(), which);
+        Ok(logarithmic.unwrap_or(units))
     }
 
     /// By the state, and the fastest rate of the linearised system; where a state is 0, by how far it moves in such a time, at first or by what
@@ -84,10 +127,7 @@ impl MotionUnits {
             way = &jacobian * way * time;
         }
         let size = |size: &f64| if size.is_normal() { *size } else { 1.0 };
-        Ok(MotionUnits {
-            sizes: sizes.iter().map(size).collect(),
-            time,
-        })
+        Ok(Self::new(sizes.iter().map(size).collect(), time))
     }
 
     /// With which a run from here that lasts so long begins: those at its start, and of a state that begins at 0 no less than a tiny part of what
@@ -132,13 +172,46 @@ impl MotionUnits {
     pub fn outgrown(&self, state: &[f64]) -> Option<Self> {
         /// In its unit, as far as a state may come.
         const FAR: f64 = 256.0;
-        let beyond = |x: &f64| x.is_finite() && x.abs() > FAR;
-        state.iter().any(beyond).then(|| {
-            let larger = |(size, x): (&f64, &f64)| size * round(x.abs().max(1.0));
+        // A logarithm says by itself how far its state has come.
+        let plain = |i: usize| self.signs[i] == 0.0;
+        let beyond = |i: usize| plain(i) && state[i].is_finite() && state[i].abs() > FAR;
+        (0..state.len()).any(beyond).then(|| {
+            let larger = |i: usize| match plain(i) {
+                true => self.sizes[i] * round(state[i].abs().max(1.0)),
+                false => self.sizes[i],
+            };
             MotionUnits {
-                sizes: self.sizes.iter().zip(state).map(larger).collect(),
-                time: self.time,
+                sizes: (0..state.len()).map(larger).collect(),
+                ..self.clone()
             }
+        })
+    }
+
+    /// The same where states have come to what doubles hardly hold, here in these units: those that have logarithms
+    /// ([`TextSystem::have_logarithms`]) are followed by these. `None` where there are none such.
+    pub fn sunken(&self, have_logarithms: &[bool], state: &[f64]) -> Option<Self> {
+        let sinks = |i: usize| have_logarithms[i] && self.is_sunken(i, state[i]);
+        self.in_logarithms(state, sinks)
+    }
+
+    /// Whether a state, here in its unit, is hardly above the least normal double.
+    fn is_sunken(&self, state: usize, x: f64) -> bool {
+        (x * self.sizes[state]).abs() < SUNKEN
+    }
+
+    /// The same with the logarithms of the states of `which` that are not 0; `None` where there are no more of these.
+    pub fn in_logarithms(&self, state: &[f64], which: impl Fn(usize) -> bool) -> Option<Self> {
+        let is_new = |i: usize| self.signs[i] == 0.0 && state[i] != 0.0 && which(i);
+        if !(0..state.len()).any(is_new) {
+            return None;
+        }
+        let mut signs = self.signs.clone();
+        for i in (0..state.len()).filter(|&i| is_new(i)) {
+            signs[i] = state[i].signum();
+        }
+        Some(MotionUnits {
+            signs,
+            ..self.clone()
         })
     }
 
@@ -160,19 +233,31 @@ impl MotionUnits {
         let measured = MotionUnits {
             sizes: sizes.collect(),
             time: seen.time * self.time,
+            signs: self.signs.clone(),
         };
         Ok(Some((end, measured)))
     }
 
     /// A run from here that lasts so long at most, in the field of these units; `None` where it fails.
     fn watched(&self, field: &AnyField<'_>, start: &Vector, lasting: f64) -> Result<Option<Seen>> {
+        let (seen, end) = self.seen(field, start, lasting)?;
+        Ok((end.is_ok() && seen.steps > 0).then_some(seen))
+    }
+
+    /// The same, failed or not, and how it ended.
+    fn seen(
+        &self,
+        field: &AnyField<'_>,
+        start: &Vector,
+        lasting: f64,
+    ) -> Result<(Seen, Result<Vector>)> {
         let tolerances = Tolerances::equal(ROUGH)?;
         let mut integrator = AnyIntegrator::new(Choice::Auto, tolerances, 2 * STEPS)?;
         let mut seen = Seen::of(start.len());
         let mut observer = |step: &AnyStep<'_>| Ok(seen.see(step));
         let span = (0.0, lasting);
         let end = integrator.flow(field, span, &self.inward(start), Some(&mut observer));
-        Ok((end.is_ok() && seen.steps > 0).then_some(seen))
+        Ok((seen, end))
     }
 
     /// A time, in the system's own unit.
@@ -208,7 +293,7 @@ impl MotionUnits {
                 (*t, *again) = (*t * time, again.map(|t| t * time));
             }
             Error::TooManySteps { t, end, .. } => (*t, *end) = (*t * time, *end * time),
-            Error::NonFinite { t, .. } => *t *= time,
+            Error::NonFinite { t, .. } | Error::Underflow { t, .. } => *t *= time,
             Error::Sundials { time: t, .. } => *t = t.map(|t| t * time),
             Error::WrongTime { asked, returned } => {
                 (*asked, *returned) = (*asked * time, *returned * time);
@@ -223,7 +308,7 @@ impl MotionUnits {
             } => {
                 (*since, *t) = (*since * time, *t * time);
                 for x in [section, lowest, highest] {
-                    *x *= self.sizes[state];
+                    *x = self.outward_value(state, self.direction(state) * *x);
                 }
             }
             _ => {}
@@ -236,7 +321,13 @@ impl MotionUnits {
     /// # Errors
     /// Those of [`TextSystem::in_units`].
     pub fn inward_system(&self, system: &TextSystem) -> Result<TextSystem> {
-        system.in_units(&self.sizes, self.time)
+        let system = system.in_units(&self.sizes, self.time)?;
+        if self.signs.iter().all(|sign| *sign == 0.0) {
+            return Ok(system);
+        }
+        system.in_logarithms(&self.signs)?.ok_or_else(|| {
+            Error::Input("the rate of a state over the state itself is not known".into())
+        })
     }
 
     /// The field of a system in these units.
@@ -247,14 +338,56 @@ impl MotionUnits {
         AnyField::of_text(Cow::Owned(self.inward_system(system)?))
     }
 
+    /// 1 where a state grows in the system's own units when it grows here, else -1.
+    pub fn direction(&self, state: usize) -> f64 {
+        if self.signs[state] < 0.0 { -1.0 } else { 1.0 }
+    }
+
+    /// The value of a state in its unit here, or its logarithm.
+    pub fn inward_value(&self, state: usize, x: f64) -> f64 {
+        let x = x / self.sizes[state];
+        match self.signs[state] {
+            0.0 => x,
+            sign => (sign * x).ln(),
+        }
+    }
+
+    /// The same in the system's own.
+    pub fn outward_value(&self, state: usize, x: f64) -> f64 {
+        self.sizes[state]
+            * match self.signs[state] {
+                0.0 => x,
+                sign => sign * x.exp(),
+            }
+    }
+
+    /// What the error of a value here makes of the value in the system's own unit.
+    pub fn outward_error_of(&self, state: usize, x: f64, error: f64) -> f64 {
+        match self.signs[state] {
+            0.0 => error * self.sizes[state],
+            // No less than the least double, which the value may be rounded to.
+            _ => self.outward_value(state, x).abs() * error.exp_m1() + f64::from_bits(1),
+        }
+    }
+
     /// A state in these units.
     pub fn inward(&self, state: &Vector) -> Vector {
-        Vector::from_fn(state.len(), |i, _| state[i] / self.sizes[i])
+        Vector::from_fn(state.len(), |i, _| self.inward_value(i, state[i]))
+    }
+
+    /// The same state in other units, also where its value is below the doubles and only its logarithm is known.
+    pub fn moved(&self, other: &Self, state: &[f64]) -> Vector {
+        Vector::from_fn(state.len(), |i, _| {
+            match self.signs[i] != 0.0 && self.signs[i] == other.signs[i] {
+                true => state[i] + (self.sizes[i] / other.sizes[i]).ln(),
+                false => other.inward_value(i, self.outward_value(i, state[i])),
+            }
+        })
     }
 
     /// A state in the system's own.
     pub fn outward(&self, state: &Vector) -> Vector {
-        Vector::from_fn(state.len(), |i, _| state[i] * self.sizes[i])
+        Vector::from_fn(state.len(), |i, _| self.outward_value(i, state[i]))
     }
 
     /// Tolerances in these units: an absolute one in the system's own holds for the state with the largest unit.
@@ -265,127 +398,4 @@ impl MotionUnits {
         }
         inward
     }
-}
-
-/// What is seen of a run.
-struct Seen {
-    steps: usize,
-    begin: f64,
-    end: f64,
-    last: Vec<f64>,
-    largest: Vec<f64>,
-    ranges: Vec<(f64, f64)>,
-    /// The ways of all states, forwards and backwards.
-    ways: Vec<f64>,
-}
-
-impl Seen {
-    fn of(count: usize) -> Self {
-        Seen {
-            steps: 0,
-            begin: 0.0,
-            end: 0.0,
-            last: vec![0.0; count],
-            largest: vec![0.0; count],
-            ranges: vec![(f64::INFINITY, f64::NEG_INFINITY); count],
-            ways: vec![0.0; count],
-        }
-    }
-
-    fn see(&mut self, step: &AnyStep<'_>) -> Control {
-        self.steps += 1;
-        self.end = step.t1;
-        self.last = step.y1.to_vec();
-        if self.steps == STEPS / 2 {
-            self.begin = step.t1;
-        }
-        for (largest, x) in self.largest.iter_mut().zip(step.y0.iter().zip(step.y1)) {
-            *largest = largest.max(x.0.abs()).max(x.1.abs());
-        }
-        if self.steps >= STEPS / 2 {
-            for (i, &x) in step.y1.iter().enumerate() {
-                let (least, most) = &mut self.ranges[i];
-                (*least, *most) = (least.min(x), most.max(x));
-            }
-        }
-        if self.steps > STEPS / 2 {
-            for (i, way) in self.ways.iter_mut().enumerate() {
-                *way += (step.y1[i] - step.y0[i]).abs();
-            }
-        }
-        if self.steps == STEPS {
-            Control::Stop
-        } else {
-            Control::Continue
-        }
-    }
-
-    /// A run that ends sooner has come to rest.
-    fn rests(&self) -> bool {
-        self.steps < STEPS
-    }
-
-    /// The value of a state, or, where it has died out, the largest that it had.
-    fn value(&self, i: usize) -> f64 {
-        let (value, largest) = (self.last[i].abs(), self.largest[i]);
-        if value > STILL * largest {
-            value
-        } else {
-            largest
-        }
-    }
-
-    /// At rest: in proportion to the slowest motion there, until the first state moves by its own value, but no less than a part of its value;
-    /// what has no part in it has its value.
-    fn at_rest(&self, jacobian: &Matrix) -> MotionUnits {
-        let values = Vector::from_fn(self.last.len(), |i, _| self.value(i));
-        let motion = slowest_motion(jacobian).unwrap_or_else(|| values.clone());
-        let reach = motion.iter().zip(&values).zip(&self.last);
-        let reach = reach
-            .filter(|((_, value), last)| last.abs() > STILL * **value)
-            .map(|((moved, value), _)| value / moved);
-        let reach = reach
-            .filter(|x| x.is_finite())
-            .fold(f64::INFINITY, f64::min);
-        /// Of a value: elsewhere a state may move by more than it does here.
-        const LEAST: f64 = 1.0 / 16.0;
-        let size = |(moved, value): (&f64, &f64)| {
-            let own = moved * reach;
-            let size = round(if own.is_finite() && own > STILL * value {
-                own.max(LEAST * value)
-            } else {
-                *value
-            });
-            if size.is_normal() { size } else { 1.0 }
-        };
-        MotionUnits {
-            sizes: motion.iter().zip(&values).map(size).collect(),
-            time: 1.0,
-        }
-    }
-
-    /// States that move have their range, others their value; the time is that in which the liveliest one goes through its range.
-    fn units(&self) -> MotionUnits {
-        let mut time = f64::INFINITY;
-        let mut sizes = Vec::with_capacity(self.last.len());
-        for (i, (least, most)) in self.ranges.iter().enumerate() {
-            let range = most - least;
-            let moves = range > STILL * most.abs().max(least.abs());
-            let size = round(if moves { range } else { self.value(i) });
-            sizes.push(if size.is_normal() { size } else { 1.0 });
-            if moves {
-                time = time.min((self.end - self.begin) * range / self.ways[i]);
-            }
-        }
-        let time = round(time);
-        let time = if time.is_normal() { time } else { 1.0 };
-        MotionUnits { sizes, time }
-    }
-}
-
-/// How far each variable moves in the motion of the linearised system that decays last.
-fn slowest_motion(jacobian: &Matrix) -> Option<Vector> {
-    let all = eigenvalues(jacobian)?;
-    let slowest = all.into_iter().max_by(|a, b| a.re.total_cmp(&b.re))?;
-    Some(eigenvector(jacobian, slowest)?.map(|z| z.norm()))
 }

@@ -3,8 +3,8 @@
 use super::any_field::AnyExact;
 use super::any_integrator::{AnyIntegrator, FlowDerivatives, Method};
 use super::any_step::{AnyObserver, AnyStep};
-use super::{Integrator, Observer, Step, Taylor, Work};
-use crate::error::Result;
+use super::{Control, Integrator, Observer, Step, Taylor, Work};
+use crate::error::{Error, Result};
 use crate::field::{ExactField, Jacobian, Matrix, State, Vector, VectorField, state, vector};
 use crate::series::{Jet3, Tangent};
 
@@ -79,6 +79,53 @@ impl<const N: usize> Static<'_, N> {
             Static::Owned(field) => &**field,
             Static::Lent(field) => *field,
         }
+    }
+}
+
+/// Below this a factor of its own rate is about to lose its digits: the least double is no longer a rounding error of it.
+pub(super) const SUNKEN: f64 = f64::MIN_POSITIVE / f64::EPSILON;
+
+/// Watches variables that are factors of their own rates. Where one has fallen below the least double its rate over itself, an entry of the
+/// Jacobian's diagonal, still says how it goes on, and when it would be back.
+struct Sinking<const N: usize> {
+    own: [bool; N],
+    /// The logarithm of each that has fallen so low, over that of the least double.
+    below: [Option<f64>; N],
+}
+
+impl<const N: usize> Sinking<N> {
+    /// `None` where there are no such variables.
+    fn of(field: &dyn VectorField<N>) -> Option<Self> {
+        let own = field.own_factors();
+        own.contains(&true).then_some(Sinking {
+            own,
+            below: [None; N],
+        })
+    }
+
+    fn see(&mut self, field: &dyn VectorField<N>, step: &Step<'_, N>) -> Result<()> {
+        let mut rates: Option<[State<N>; 3]> = None;
+        for variable in (0..N).filter(|&i| self.own[i]) {
+            let is_below = step.y1[variable].abs() < f64::MIN_POSITIVE;
+            let Some(below) = &mut self.below[variable] else {
+                self.below[variable] = (is_below && step.y0[variable] != 0.0).then_some(0.0);
+                continue;
+            };
+            // By Simpson's rule: steps may be long, where nothing else moves.
+            let [begin, middle, end] = rates.get_or_insert_with(|| {
+                let middle = (step.dense)(0.5 * (step.t0 + step.t1));
+                [*step.y0, middle, *step.y1].map(|y| field.jacobian(&y).diagonal())
+            });
+            let rate = (begin[variable] + 4.0 * middle[variable] + end[variable]) / 6.0;
+            *below += rate * (step.t1 - step.t0);
+            // A value just above the least double may be all error: the rates say whether it is there.
+            let is_back = step.y1[variable].abs() > SUNKEN;
+            if is_back || below.is_nan() || *below > 0.0 {
+                let t = step.t1;
+                return Err(Error::Underflow { variable, t });
+            }
+        }
+        Ok(())
     }
 }
 
@@ -178,10 +225,23 @@ impl<const N: usize> Flows for Static<'_, N> {
                 },
             }
         };
-        let (end, work) = match observer {
-            None => run(None),
-            Some(observer) => run(Some(&mut |step: &Step<'_, N>| {
+        let mut sinking = Sinking::of(self.field());
+        let (end, work) = match (observer, &mut sinking) {
+            (None, None) => run(None),
+            (Some(observer), None) => run(Some(&mut |step: &Step<'_, N>| {
                 AnyStep::of(step, &mut *observer)
+            })),
+            (mut observer, Some(sinking)) => run(Some(&mut |step: &Step<'_, N>| {
+                sinking.see(self.field(), step)?;
+                let told = match &mut observer {
+                    Some(observer) => AnyStep::of(step, &mut **observer)?,
+                    None => Control::Continue,
+                };
+                // Every step is to be seen.
+                Ok(match told {
+                    Control::Rest(_) => Control::Continue,
+                    told => told,
+                })
             })),
         };
         by.work = work;

@@ -16,36 +16,48 @@ impl MotionUnits {
     /// An orbit in the system's own units.
     pub fn outward_orbit(&self, mut orbit: Orbit) -> Orbit {
         let time = self.time;
-        let uncertain =
-            |x: Uncertain, unit: f64| Uncertain::new(x.value * unit, x.uncertainty * unit);
-        let parts = orbit.point.iter().zip(&self.sizes);
+        let uncertain = |x: Uncertain, state: usize| {
+            let error = self.outward_error_of(state, x.value, x.uncertainty);
+            Uncertain::new(self.outward_value(state, x.value), error)
+        };
         // In units of 1 + |y| here and there.
-        let wider = parts.map(|(x, size)| (size + (x * size).abs()) / (1.0 + (x * size).abs()));
-        orbit.point_uncertainty *= wider.fold(0.0, f64::max);
-        orbit.period = uncertain(orbit.period, time);
+        let wider = orbit.point.iter().enumerate().map(|(i, &x)| {
+            let error = orbit.point_uncertainty * (1.0 + x.abs());
+            self.outward_error_of(i, x, error) / (1.0 + self.outward_value(i, x).abs())
+        });
+        orbit.point_uncertainty = wider.fold(0.0, f64::max);
+        orbit.period = self.outward_time(orbit.period);
         orbit.point_time *= time;
         orbit.durations.iter_mut().for_each(|t| *t *= time);
         for state in std::iter::once(&mut orbit.point).chain(&mut orbit.nodes) {
-            state
-                .iter_mut()
-                .zip(&self.sizes)
-                .for_each(|(x, size)| *x *= size);
+            let each = state.iter_mut().enumerate();
+            each.for_each(|(i, x)| *x = self.outward_value(i, *x));
         }
-        for (extremes, size) in orbit.extremes.iter_mut().zip(&self.sizes) {
-            *extremes = extremes.map(|x| uncertain(x, *size));
+        for (i, extremes) in orbit.extremes.iter_mut().enumerate() {
+            *extremes = extremes.map(|x| uncertain(x, i));
+            if self.direction(i) < 0.0 {
+                extremes.reverse();
+            }
         }
-        orbit.stress_min = uncertain(orbit.stress_min, self.sizes[0]);
-        orbit.stress_max = uncertain(orbit.stress_max, self.sizes[0]);
+        let [stress_min, stress_max] = [orbit.stress_min, orbit.stress_max];
+        (orbit.stress_min, orbit.stress_max) = (uncertain(stress_min, 0), uncertain(stress_max, 0));
+        if self.direction(0) < 0.0 {
+            std::mem::swap(&mut orbit.stress_min, &mut orbit.stress_max);
+        }
         orbit
     }
 
     /// An orbit in these units, for what does not look at its bounds.
     pub fn inward_orbit(&self, orbit: &Orbit) -> Orbit {
-        let inverse = MotionUnits {
-            sizes: self.sizes.iter().map(|size| 1.0 / size).collect(),
-            time: 1.0 / self.time,
-        };
-        inverse.outward_orbit(orbit.clone())
+        let mut orbit = orbit.clone();
+        orbit.period = Uncertain::new(orbit.period.value / self.time, orbit.period.uncertainty);
+        orbit.point_time /= self.time;
+        orbit.durations.iter_mut().for_each(|t| *t /= self.time);
+        for state in std::iter::once(&mut orbit.point).chain(&mut orbit.nodes) {
+            let each = state.iter_mut().enumerate();
+            each.for_each(|(i, x)| *x = self.inward_value(i, *x));
+        }
+        orbit
     }
 
     /// The same orbit by a second method.

@@ -8,7 +8,7 @@
 use super::kinsol::Residual;
 use super::linear_solver::newton;
 use super::vector::{OwnVectors, Storage, read, write};
-use crate::field::{Jacobian, State, VectorField};
+use crate::field::{Jacobian, State, VectorField, with_differences};
 use std::any::Any;
 use std::cell::Cell;
 use std::ffi::{c_int, c_void};
@@ -158,6 +158,21 @@ impl<'a, const N: usize> UserData<'a, N> {
             Some(j) => Ok(j),
         }
     }
+
+    /// J(y) for Newton's method, which converges with differences in place of what is no number; sensitivities need J itself.
+    #[inline(always)]
+    fn newton_jacobian(&self, y: &State<N>) -> Result<Jacobian<N>, c_int> {
+        let field = self.problem.field;
+        match self.guard.run(|| field.jacobian(y)) {
+            None => Err(FATAL),
+            Some(j) if all_finite(j.as_slice()) => Ok(j),
+            Some(j) => match self.guard.run(|| with_differences(field, y, j)) {
+                None => Err(FATAL),
+                Some(j) if all_finite(j.as_slice()) => Ok(j),
+                Some(_) => Err(self.guard.refuse("the Jacobian")),
+            },
+        }
+    }
 }
 
 /// What KINSOL's callbacks work with.
@@ -233,7 +248,7 @@ pub(super) unsafe extern "C" fn dense_jacobian<S: Storage, const N: usize>(
         let Some(frame) = frame::<UserData<'_, N>>(user_data) else {
             return FATAL;
         };
-        match frame.jacobian(&read::<S, N>(y)) {
+        match frame.newton_jacobian(&read::<S, N>(y)) {
             Err(code) => code,
             Ok(j) => {
                 let data = sundials_sys::SUNDenseMatrix_Data(a);
@@ -269,7 +284,7 @@ pub(super) unsafe extern "C" fn linear_system<const N: usize>(
         let content = newton::<N>(a);
         *current = c_int::from(keep == 0);
         if keep == 0 {
-            match frame.jacobian(&read::<OwnVectors, N>(y)) {
+            match frame.newton_jacobian(&read::<OwnVectors, N>(y)) {
                 Err(code) => return code,
                 Ok(j) => content.jacobian = j,
             }

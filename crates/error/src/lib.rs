@@ -115,6 +115,14 @@ pub enum Error {
         /// Where.
         t: f64,
     },
+    /// A variable that is a factor of its own rate fell below the least double and grew again: its digits are lost.
+    #[error("{}", underflow(&MessageUnits::NONE, *variable, *t))]
+    Underflow {
+        /// Its place among the variables, from 0.
+        variable: usize,
+        /// The time at which it is not known any more.
+        t: f64,
+    },
     /// The field has no formula that power series could run on.
     #[error(
         "this field is not written for power series, which the method taylor needs; choose another method"
@@ -309,6 +317,7 @@ impl Error {
             } => too_fast(units, (*t, *uncertainty), *overflows, *lasting),
             Error::TooManySteps { t, end, limit } => too_many_steps(units, *limit, *t, *end),
             Error::NonFinite { what, t } => non_finite(units, what, *t),
+            Error::Underflow { variable, t } => underflow(units, *variable, *t),
             Error::NoReturn {
                 since,
                 t,
@@ -520,6 +529,15 @@ fn too_many_steps(units: &MessageUnits, limit: usize, t: f64, end: f64) -> Strin
 
 fn non_finite(units: &MessageUnits, what: &str, t: f64) -> String {
     format!("{what} is not finite at t = {}", measured(t, units.time))
+}
+
+fn underflow(units: &MessageUnits, variable: usize, t: f64) -> String {
+    format!(
+        "variable {} fell below {:.1e}, the least double, and grows again: from t = {} on its value is not known; write the equations in its logarithm",
+        variable + 1,
+        f64::MIN_POSITIVE,
+        measured(t, units.time)
+    )
 }
 
 fn no_return(

@@ -77,6 +77,12 @@ pub trait VectorField<const N: usize>: Send + Sync {
         State::from(self.own_factors().map(own))
     }
 
+    /// Whether J may hold NaN where f is smooth enough to step on, as that of formulas with sqrt(max(0, x)) does: steps are then made with
+    /// [`with_differences`]. Of other fields NaN is a mistake, and an error.
+    fn may_lack_slopes(&self) -> bool {
+        false
+    }
+
     /// The field as one of those that differ by parameters, where it is.
     fn parametrised(&self) -> Option<&dyn Parametrised<N>> {
         None
@@ -154,4 +160,47 @@ pub trait Analytic<const N: usize> {
     fn transport(&self, _start: [Jet3; N]) -> Option<Box<dyn TaylorMap<N> + '_>> {
         None
     }
+}
+
+/// Returns J(y) with difference quotients in place of the entries that are NaN, as those of sqrt(max(0, x)) where x is negative: for methods that need
+/// no more of J than that they converge. Entries that are infinite stay, and all of a field that has its slopes ([`VectorField::may_lack_slopes`]).
+///
+/// A variable is displaced by a part of its own value and of how far it moves in the shortest time on J's diagonal, so that its unit does not matter. Where
+/// it is 0 and does not move there is no such part: the entry is 0, and the next step, which begins elsewhere, has another.
+#[cold]
+pub fn with_differences<const N: usize>(
+    field: &dyn VectorField<N>,
+    y: &State<N>,
+    mut jacobian: Jacobian<N>,
+) -> Jacobian<N> {
+    if !field.may_lack_slopes() {
+        return jacobian;
+    }
+    let f = field.f(y);
+    let rates = (0..N).map(|i| jacobian[(i, i)].abs());
+    let fastest = rates.filter(|rate| rate.is_finite()).fold(0.0, f64::max);
+    for j in 0..N {
+        let unknown: Vec<usize> = (0..N).filter(|&i| jacobian[(i, j)].is_nan()).collect();
+        if unknown.is_empty() {
+            continue;
+        }
+        let moved = f[j].abs() / fastest;
+        let size = y[j].abs() + if moved.is_finite() { moved } else { 0.0 };
+        let displaced = |by: f64| {
+            let mut beside = *y;
+            beside[j] += by;
+            (field.f(&beside) - f) / (beside[j] - y[j])
+        };
+        let by = f64::EPSILON.sqrt() * size;
+        let [forwards, backwards] = [by, -by].map(displaced);
+        for i in unknown {
+            if size == 0.0 {
+                jacobian[(i, j)] = 0.0;
+                continue;
+            }
+            let is_known = forwards[i].is_finite();
+            jacobian[(i, j)] = if is_known { forwards[i] } else { backwards[i] };
+        }
+    }
+    jacobian
 }

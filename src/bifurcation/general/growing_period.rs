@@ -3,7 +3,8 @@
 //!
 //! Beside a saddle the parameter tends to its limit as e^(-k T), k being the least of the real parts of the saddle's eigenvalues (Shilnikov, Shilnikov, Turaev &
 //! Chua 2001, Methods of qualitative theory in nonlinear dynamics, chapter 13); beside a saddle-node as T^(-2) (Strogatz 1994, section 8.4). Two pairs of orbits have to agree
-//! on the limit, by one law or the other; else nothing is said.
+//! on the limit, by one law or the other. Beside a saddle-focus whose complex eigenvalues are the nearest to the axis the parameter goes to and fro about its limit,
+//! ever less (Glendinning & Sparrow 1984, J. Stat. Phys. 35, 645): then it is between where the last two turns are. Else nothing is said.
 
 use super::equilibria::{EquilibriumBranches, Reported};
 use super::{FREE, GeneralBranch, GeneralPoint};
@@ -14,6 +15,7 @@ use crate::field::Vector;
 use crate::integrate::AnyField;
 use crate::number::{Uncertain, eigenvalues};
 use crate::orbit::{Regular, ShootingNodes, Tracer};
+use nalgebra::Complex;
 use std::ops::ControlFlow::Continue;
 
 /// Orbits that are looked at: the last one, and others before it, from each of which to the next what is left of the way falls by so much.
@@ -60,8 +62,16 @@ impl Periods {
             let way = self.0.iter().map(|[at, _]| (at - limit.value).abs());
             limit.uncertainty <= NEAR * way.fold(0.0, f64::max)
         };
+        if let Some(at) = self.between_turns(off).filter(|limit| near(*limit))
+            && passed_saddle(branch, last).is_some_and(|saddle| saddle.is_focus())
+        {
+            return Some(Limit {
+                at,
+                is_saddle_node: false,
+            });
+        }
         let to_saddle = || {
-            let rate = saddle_rate(branch, last)?;
+            let rate = passed_saddle(branch, last)?.rate();
             let falls = |first: f64, second: f64| (rate * (second - first)).exp();
             extrapolated(self.apart(falls)?, falls, off).filter(|limit| near(*limit))
         };
@@ -78,6 +88,32 @@ impl Periods {
             at: fold,
             is_saddle_node: true,
         })
+    }
+
+    /// The limit of a coordinate that goes to and fro, ever less, as the period grows: between the last two turns, as the ways between turns
+    /// shrink. `None` where there are fewer than four turns, or a way is no shorter than the one before.
+    fn between_turns(&self, corrected: f64) -> Option<Uncertain> {
+        /// Turns between which three ways show how they shrink.
+        const TURNS: usize = 4;
+        let turns = |three: &[[f64; 2]]| {
+            let [a, b, c] = [three[0][0], three[1][0], three[2][0]];
+            let grows = three[0][1] < three[1][1] && three[1][1] < three[2][1];
+            (grows && (b - a) * (c - b) < 0.0).then_some(b)
+        };
+        let all: Vec<f64> = self.0.windows(3).filter_map(turns).collect();
+        let last = all.get(all.len().checked_sub(TURNS)?..)?;
+        let ways: Vec<f64> = last.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let shrink = ways
+            .windows(2)
+            .all(|pair| pair[0] * pair[1] < 0.0 && pair[1].abs() < pair[0].abs());
+        // Where rounding turns the branch nothing is said.
+        let [before, way] = [ways[ways.len() - 2], ways[ways.len() - 1]];
+        if !shrink || way.abs() <= 2.0 * corrected {
+            return None;
+        }
+        let part = (way / before).abs();
+        let at = last[last.len() - 1] - way * part / (1.0 + part);
+        Some(Uncertain::new(at, way.abs() + corrected))
     }
 
     /// The last orbit and others before it, between whose periods what is left of the way falls; `None` where there are none such on a
@@ -118,15 +154,34 @@ fn extrapolated(
     agree.then(|| Uncertain::new(now, (now - c[0]).abs().max(off) + corrected))
 }
 
-/// The least absolute value of the real parts of the eigenvalues of the saddle by which an orbit passes.
-fn saddle_rate(branch: &GeneralBranch<'_>, orbit: &Regular) -> Option<f64> {
+/// The eigenvalues of the saddle by which an orbit passes.
+struct Saddle(Vec<Complex<f64>>);
+
+/// The saddle where an orbit is slowest; `None` where no equilibrium is there, or one that is no saddle.
+fn passed_saddle(branch: &GeneralBranch<'_>, orbit: &Regular) -> Option<Saddle> {
     let field = branch.system.family.field(orbit.site.at);
     let passage = Passage::of(&field, &orbit.site.shooting)?;
     let saddle = passage.equilibrium(branch, orbit.site.at[FREE])?;
     let found = eigenvalues(&field.jacobian(&saddle))?;
-    let real = || found.iter().map(|z| z.re);
-    let both_signs = real().any(|x| x > 0.0) && real().any(|x| x < 0.0);
-    both_signs.then(|| real().fold(f64::INFINITY, |least, x| least.min(x.abs())))
+    let both_signs = found.iter().any(|z| z.re > 0.0) && found.iter().any(|z| z.re < 0.0);
+    both_signs.then_some(Saddle(found))
+}
+
+impl Saddle {
+    /// The least absolute value of a real part.
+    fn rate(&self) -> f64 {
+        let real = self.0.iter().map(|z| z.re.abs());
+        real.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether on either side of the axis the eigenvalues that are nearest to it are complex.
+    fn is_focus(&self) -> bool {
+        [1.0, -1.0].iter().any(|side| {
+            let own = self.0.iter().filter(|z| z.re * side > 0.0);
+            let nearest = own.min_by(|a, b| a.re.abs().total_cmp(&b.re.abs()));
+            nearest.is_some_and(|z| z.im != 0.0)
+        })
+    }
 }
 
 /// Where an orbit is slowest.

@@ -7,7 +7,7 @@ use super::orbits::OrbitBranches;
 use super::{FREE, GeneralEvent, GeneralPoint, SAME, Teller};
 use crate::bifurcation::Label;
 use crate::bifurcation::orbits::normal_form::{Form, normal_form};
-use crate::bifurcation::orbits::{embedded, middle, refined};
+use crate::bifurcation::orbits::{Vertical, embedded, middle, refined};
 use crate::continuation::{Met, Stop};
 use crate::error::Result;
 use crate::field::Vector;
@@ -32,6 +32,8 @@ pub(super) struct OrbitBranch<'s, 'b, 'a> {
     pub begin: Option<ContinuationPoint>,
     periods: Periods,
     outside: Outside,
+    /// While the parameter does not vary.
+    vertical: Option<Vertical>,
 }
 
 impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
@@ -49,6 +51,7 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
             begin: None,
             periods: Periods::default(),
             outside: Outside::default(),
+            vertical: Some(Vertical::default()),
         }
     }
 
@@ -134,10 +137,31 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         teller.tell(event)
     }
 
+    /// Where so many orbits have the same parameter that the branch is followed no further.
+    fn vertical_end(
+        &mut self,
+        palc: &mut Palc<'_, '_>,
+        now: &DirectedPoint,
+    ) -> Option<GeneralPoint> {
+        self.vertical = self
+            .vertical
+            .and_then(|vertical| vertical.and(palc, now, FREE));
+        let vertical = self.vertical.filter(Vertical::is_plain)?;
+        let point = GeneralPoint {
+            note: Some(format!(
+                "vertical branch: on {} orbits the parameter varies by no more than its error; all orbits exist at this value at once, as in \
+                 a conservative system; not followed further",
+                vertical.orbits()
+            )),
+            ..self.set.row(self.number, &now.here, Some(Label::Ep))
+        };
+        Some(point.placed(self.set.branch.system.family, [vertical.uncertainty(), 0.0]))
+    }
+
     /// The next orbit: whether the branch goes on.
     fn orbit(
         &mut self,
-        palc: &Palc<'_, '_>,
+        palc: &mut Palc<'_, '_>,
         now: &DirectedPoint,
         before: &DirectedPoint,
         teller: &mut Teller<'_>,
@@ -179,7 +203,14 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         let site = &here.site;
         self.periods.push(site.at[FREE], site.shooting.period());
         let row = self.set.row(self.number, here, None);
-        self.tell(GeneralEvent::Row(row), teller)
+        self.tell(GeneralEvent::Row(row), teller)?;
+        match self.vertical_end(palc, now) {
+            Some(end) => {
+                let _ = self.tell(GeneralEvent::Special(end), teller);
+                Break(())
+            }
+            None => Continue(()),
+        }
     }
 
     /// Whether a branch of doubled orbits, whose parameter turns, is back at a period doubling.

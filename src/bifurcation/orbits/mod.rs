@@ -25,3 +25,4 @@ pub(super) use cubic_coefficient::{CoefficientCurve, Decided};
 pub use locus::{loci, locus};
 pub use refine::SpecialOrbit;
 pub(super) use refine::refined;
+pub(super) use vertical::Vertical;

@@ -16,11 +16,13 @@ const DEVIATIONS: f64 = 5.0;
 const FEWEST: usize = 8;
 const SIZES: f64 = 4.0;
 /// So many orbits of a vertical branch are enough.
-pub(super) const ENOUGH: usize = 60;
+const ENOUGH: usize = 60;
+/// Where no more is asked for than that it is vertical, orbits of so different sizes are.
+const PLENTY: f64 = 64.0;
 
 /// What is known of a branch that has been vertical so far.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Vertical {
+pub struct Vertical {
     orbits: usize,
     /// The least and the greatest coordinate of the parameter, and the largest standard deviation of one.
     coordinates: (f64, f64),
@@ -77,6 +79,21 @@ impl Vertical {
         self.orbits >= ENOUGH && self.is_shown()
     }
 
+    /// Whether there are so many, or of so different sizes, that there is no doubt.
+    pub fn is_plain(&self) -> bool {
+        self.is_enough() || self.is_shown() && self.extents.1 > PLENTY * self.extents.0
+    }
+
+    /// How many orbits there are.
+    pub fn orbits(&self) -> usize {
+        self.orbits
+    }
+
+    /// How far the coordinate of the parameter may be off.
+    pub fn uncertainty(&self) -> f64 {
+        self.range() + DEVIATIONS * self.least
+    }
+
     /// The end of the branch, in words.
     pub fn end(
         &self,
@@ -90,7 +107,7 @@ impl Vertical {
         given[free] = None;
         special.given(given);
         let place = [&mut special.driving, &mut special.stiffness];
-        let uncertainty = self.range() + DEVIATIONS * self.least;
+        let uncertainty = self.uncertainty();
         for (_, place) in place.into_iter().enumerate().filter(|(i, _)| *i == free) {
             *place = Uncertain::new(place.value, uncertainty * place.value);
         }

@@ -172,12 +172,13 @@ impl<const N: usize> Rosenbrock<N> {
         self.method
     }
 
-    /// f and J at the start, finite, and the first step.
+    /// f and J at the start, as `linearise` makes them, finite, and the first step.
     fn start(
         &mut self,
         field: &dyn VectorField<N>,
         t: (f64, f64),
         y0: &State<N>,
+        linearise: fn(&dyn VectorField<N>, &State<N>, State<N>) -> Option<Linearisation<N>>,
     ) -> Result<(Linearisation<N>, f64)> {
         if y0.iter().any(|x| !x.is_finite()) {
             return Err(Error::NonFinite {
@@ -187,7 +188,7 @@ impl<const N: usize> Rosenbrock<N> {
         }
         self.work.rhs += 1;
         self.work.jacobians += 1;
-        let here = Linearisation::new(field, y0, field.f(y0)).ok_or(Error::NonFinite {
+        let here = linearise(field, y0, field.f(y0)).ok_or(Error::NonFinite {
             what: "the right-hand side or its Jacobian",
             t: t.0,
         })?;
@@ -214,7 +215,7 @@ impl<const N: usize> Rosenbrock<N> {
         y0: &State<N>,
         mut observer: Option<Observer<'_, N>>,
     ) -> Result<State<N>> {
-        let (here, h) = self.start(field, t, y0)?;
+        let (here, h) = self.start(field, t, y0, Linearisation::for_steps)?;
         let mut trajectory =
             StepState::new(scheme, field, self.tolerances, &mut self.work, *y0, here);
         drive(
@@ -238,7 +239,7 @@ impl<const N: usize> Rosenbrock<N> {
         t: (f64, f64),
         y0: &State<N>,
     ) -> Result<(State<N>, Jacobian<N>)> {
-        let (here, h) = self.start(field, t, y0)?;
+        let (here, h) = self.start(field, t, y0, Linearisation::new)?;
         let mut bundle = Bundle::new(scheme, field, self.tolerances, &mut self.work, *y0, here)
             .ok_or(Error::NonFinite {
                 what: "the second derivative of the right-hand side",

@@ -1,6 +1,6 @@
 //! What every step is made of: the method, the stages in order, sums of them, and the field at one state.
 
-use crate::field::{Jacobian, State, VectorField};
+use crate::field::{Jacobian, State, VectorField, with_differences};
 use crate::integrate::tableau::{MAX_STAGES, Tableau};
 use nalgebra::SMatrix;
 
@@ -77,7 +77,18 @@ impl<const N: usize> Linearisation<N> {
     /// `None` if something is not finite.
     #[inline]
     pub fn new(field: &dyn VectorField<N>, y: &State<N>, f: State<N>) -> Option<Self> {
+        Self::of(f, field.jacobian(y))
+    }
+
+    /// The same with differences in place of what is no number in J: steps are good with these, tangents are not.
+    #[inline]
+    pub fn for_steps(field: &dyn VectorField<N>, y: &State<N>, f: State<N>) -> Option<Self> {
         let jacobian = field.jacobian(y);
+        Self::of(f, jacobian).or_else(|| Self::of(f, with_differences(field, y, jacobian)))
+    }
+
+    #[inline]
+    fn of(f: State<N>, jacobian: Jacobian<N>) -> Option<Self> {
         let finite = f.iter().chain(jacobian.iter()).all(|x| x.is_finite());
         finite.then_some(Linearisation { f, jacobian })
     }

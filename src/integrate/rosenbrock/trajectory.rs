@@ -156,7 +156,7 @@ impl<S: Scheme, const N: usize> Steppable for StepState<'_, S, N> {
             self.field.f(&self.next)
         };
         self.work.jacobians += 1;
-        let ahead = Linearisation::new(self.field, &self.next, f);
+        let ahead = Linearisation::for_steps(self.field, &self.next, f);
         if let Some(ahead) = ahead {
             self.ahead = ahead;
         }

@@ -31,7 +31,7 @@ impl Expressions {
 }
 
 impl Builder {
-    fn times(&mut self, place: super::Place, factor: f64) -> Result<super::Place> {
+    pub(super) fn times(&mut self, place: super::Place, factor: f64) -> Result<super::Place> {
         if factor == 1.0 {
             return Ok(place);
         }

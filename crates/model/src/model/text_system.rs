@@ -82,6 +82,35 @@ impl TextSystem {
         })
     }
 
+    /// The same in the logarithms of states that are factors of their own rates, of these signs; those whose sign is 0 stay as they are. `None`
+    /// where the formulas don't show what a rate is over its state.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where the formulas become too long.
+    pub fn in_logarithms(&self, signs: &[f64]) -> Result<Option<Self>> {
+        let rates = self.rates.in_logarithms(signs, self.names.len())?;
+        Ok(rates.map(|rates| TextSystem {
+            rates: Arc::new(rates),
+            ..self.clone()
+        }))
+    }
+
+    /// For every state whether it is a factor of its own rate, which is 0 where it is.
+    pub fn own_factors(&self) -> Vec<bool> {
+        self.rates.own_factors(self.states.len(), &self.parameters)
+    }
+
+    /// For every state whether it can be followed by its logarithm: it is a factor of its own rate, and the formulas show what that is over it.
+    pub fn have_logarithms(&self) -> Vec<bool> {
+        let mut all = self.own_factors();
+        for (i, has) in all.iter_mut().enumerate().filter(|(_, own)| **own) {
+            let mut signs = vec![0.0; self.states.len()];
+            signs[i] = 1.0;
+            *has = matches!(self.in_logarithms(&signs), Ok(Some(_)));
+        }
+        all
+    }
+
     /// The units of the states, in those of the formulas as they were read.
     pub fn sizes(&self) -> &[f64] {
         &self.sizes
@@ -291,11 +320,12 @@ impl<const N: usize> VectorField<N> for TextField<'_, N> {
         })
     }
 
+    fn may_lack_slopes(&self) -> bool {
+        true
+    }
+
     fn own_factors(&self) -> [bool; N] {
-        let TextSystem {
-            rates, parameters, ..
-        } = &*self.0;
-        let all = rates.own_factors(N, parameters);
+        let all = self.0.own_factors();
         std::array::from_fn(|i| all[i])
     }
 

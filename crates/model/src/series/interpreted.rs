@@ -4,6 +4,7 @@
 //! decides: [`advance`].
 
 mod advance;
+mod held_powers;
 
 use super::compiled::Compiled;
 use super::cubic::Jet3;
@@ -250,7 +251,7 @@ impl<'a, T: Element> Interpreted<'a, T> {
                 k += 1;
                 if k == 2 && anew {
                     anew = false;
-                    if self.rows.hold_powers(is_next_to_zero) {
+                    if self.hold_powers() {
                         k = 0;
                     }
                 }
@@ -348,17 +349,6 @@ fn power_of_two(x: f64) -> f64 {
         f64::from_bits(x.to_bits() & f64::INFINITY.to_bits()),
         f64::MIN_POSITIVE,
     )
-}
-
-/// Whether a row begins so close to 0 that the series of its non-integer powers converge only on a negligible part of a step. Such powers are
-/// held constant, and the check at the end of the step limits its length.
-fn is_next_to_zero<T: Element>(row: &[T]) -> bool {
-    /// In changes of the row in the unit of time, which is about a step.
-    const NEXT: f64 = 1.0 / (1_u64 << 44) as f64;
-    (0..T::LANES).any(|lane| {
-        let [first, change] = [0, 1].map(|k| row[k].lane(lane).abs());
-        change > 0.0 && first <= NEXT * change
-    })
 }
 
 #[inline(always)]

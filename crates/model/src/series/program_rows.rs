@@ -183,18 +183,24 @@ impl<T: Element> ProgramRows<T> {
 
     /// Holds non-integer powers of the rows that satisfy the condition constant in the next series, and no others. Returns whether this
     /// differs from the series before.
-    pub fn hold_powers(&mut self, of: impl Fn(&[T]) -> bool) -> bool {
+    pub fn hold_powers(&mut self, of: impl Fn(usize, &[T]) -> bool) -> bool {
         let mut changes = false;
         for one in &mut self.later {
             if let PlacedLater::Other(one) = one
                 && let Operation::Power(base, _) = one.operation
             {
-                let hold = of(&self.coefficients[base..][..self.room]);
+                let hold = of(base / self.room, &self.coefficients[base..][..self.room]);
                 changes |= hold != one.held;
                 one.held = hold;
             }
         }
         changes
+    }
+
+    /// Whether the next series holds any power constant.
+    pub fn holds_powers(&self) -> bool {
+        let held = |one: &PlacedLater<T>| matches!(one, PlacedLater::Other(one) if one.held);
+        self.later.iter().any(held)
     }
 
     /// What the first coefficients are to all later orders.

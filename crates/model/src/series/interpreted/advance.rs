@@ -5,7 +5,7 @@
 //! So the rates where a step ends, which the next step begins with, are compared with the derivative of the series there, and the zeros
 //! of these quantities within the step are found.
 
-use super::{Interpreted, Reached, finite, is_next_to_zero, power_of_two};
+use super::{Interpreted, Reached, finite, power_of_two};
 use crate::number::DoubleDouble;
 use crate::number::polynomial::{Crossing, roots};
 use crate::series::element::Element;
@@ -162,11 +162,34 @@ impl<T: Element> Interpreted<'_, T> {
     }
 
     /// Whether the series of the quantities whose signs the formula takes have come to their end within a step, as their zeros are looked for
-    /// by them: those of the states, which need not show them yet, may converge much farther.
+    /// by them: those of the states, which need not show them yet, may converge much farther. What has no zero there need not: the root of
+    /// what is 0 where the step ends, which is the lesser of two by far, does not.
     #[inline(always)]
     fn kinks_converge(&self, accuracy: &Accuracy, h: DoubleDouble) -> bool {
         let mut kinks = self.program.kinks.iter();
-        kinks.all(|&row| (0..T::LANES).all(|lane| self.converges(accuracy, h.hi(), row, lane)))
+        kinks.all(|&row| {
+            (0..T::LANES).all(|lane| {
+                self.converges(accuracy, h.hi(), row, lane)
+                    || self.has_no_zero(accuracy, h.hi(), row, lane)
+            })
+        })
+    }
+
+    /// Whether the first term of a row is larger than all others together, and those that are left out where they fall as those of a root do.
+    #[cold]
+    fn has_no_zero(&self, accuracy: &Accuracy, h: f64, row: usize, lane: usize) -> bool {
+        let order = accuracy.order;
+        let series = &self.rows.row(row)[..order];
+        let (mut others, mut last, mut power) = (0.0_f64, 0.0_f64, h);
+        for (j, c) in series.iter().enumerate().skip(1) {
+            let term = (c.lane(lane) * power).abs();
+            others += term;
+            if j + 2 >= order {
+                last = last.max(term);
+            }
+            power *= h;
+        }
+        series[0].lane(lane).abs() > others + 2.0 * order as f64 * last
     }
 
     /// Whether the last two terms of a row are small beside those of its first half.
@@ -214,14 +237,14 @@ impl<T: Element> Interpreted<'_, T> {
     /// and not of that of the others.
     #[inline(always)]
     fn holds_powers(&self, order: usize) -> bool {
-        self.program.bases.iter().any(|&row| {
+        let begins_at_zero = |&row: &usize| {
             let series = &self.rows.row(row)[..order];
             let is_zero = |x: T, lane: usize| x.lane(lane) == 0.0;
-            is_next_to_zero(series)
-                || (0..T::LANES).any(|lane| {
-                    is_zero(series[0], lane) && !series.iter().all(|x| is_zero(*x, lane))
-                })
-        })
+            (0..T::LANES)
+                .any(|lane| is_zero(series[0], lane) && !series.iter().all(|x| is_zero(*x, lane)))
+        };
+        let bases = &self.program.bases;
+        !bases.is_empty() && (self.rows.holds_powers() || bases.iter().any(begins_at_zero))
     }
 
     /// The derivative of the series of a variable at the end that was looked at, and the rate there, in units of the series.

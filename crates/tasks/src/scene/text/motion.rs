@@ -19,6 +19,27 @@ impl TextModel {
         }
     }
 
+    /// The units of a run from here, in which states may be followed by their logarithms ([`MotionUnits::measured_or_logarithmic`]).
+    ///
+    /// # Errors
+    /// Those of the field.
+    pub fn motion_units_of_run(&self, start: &Vector) -> Result<MotionUnits> {
+        match self.slab {
+            Some(_) => Ok(MotionUnits::given(start.len())),
+            None => MotionUnits::measured_or_logarithmic(&self.system, start),
+        }
+    }
+
+    /// The units of a run in which a state fell below what doubles hold: those of the run, with the logarithms of all states that are factors
+    /// of their own rates. `None` where there are no more of these.
+    pub fn units_below_doubles(&self, units: &MotionUnits, start: &Vector) -> Option<MotionUnits> {
+        if self.slab.is_some() {
+            return None;
+        }
+        let have_logarithms = self.system.have_logarithms();
+        units.in_logarithms(start.as_slice(), |i| have_logarithms[i])
+    }
+
     /// Those of a box in which equilibria are looked for, where no start is known: a part of its widths, and the fastest rate in its middle.
     ///
     /// # Errors

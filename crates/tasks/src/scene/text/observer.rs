@@ -119,10 +119,12 @@ impl<'a> TextObserver<'a> {
                 true => Vector::from_column_slice(step.y1),
                 false => step.dense(t / units.time),
             };
-            let state = state.iter().zip(&units.sizes).map(|(x, size)| x * size);
+            // On a ramp V_H is a state more.
+            let state = state.iter().take(count).enumerate();
+            let state = state.map(|(i, &x)| units.outward_value(i, x));
             TextInstant {
                 time: t,
-                state: state.take(count).collect(),
+                state: state.collect(),
                 slip: leading(slips),
                 driving: stretch.driving_at(t),
             }

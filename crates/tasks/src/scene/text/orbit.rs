@@ -7,6 +7,7 @@ use crate::scene::orbit::{dense_output, run_method, second, worth};
 use crate::scene::plan::{Sampling, equally_spaced, longest_in_words, stepping};
 use crate::scene::system::Described;
 use serde_json::Value;
+use std::sync::OnceLock;
 use twinslip::equilibrium::Symmetry;
 use twinslip::error::{Error, Result};
 use twinslip::field::Vector;
@@ -28,6 +29,8 @@ pub struct TextOrbitPlan {
     pub model: TextModel,
     /// The units in which it is looked for.
     units: MotionUnits,
+    /// Those in which it was, where a state fell below what doubles hold.
+    logarithmic: OnceLock<MotionUnits>,
     /// At or near the orbit.
     pub start: Vector,
     /// The period, roughly, where it is given.
@@ -66,7 +69,8 @@ impl TextOrbitPlan {
         let guess = |period| positive("period-guess", period);
         let start = orbit_start(options.start.as_deref(), symmetry(options, &model)?, &model)?;
         Ok(TextOrbitPlan {
-            units: model.motion_units(&start)?,
+            units: model.motion_units_of_run(&start)?,
+            logarithmic: OnceLock::new(),
             atol_is_given: options.atol.is_some(),
             start,
             period: options.period_guess.map(guess).transpose()?,
@@ -109,14 +113,16 @@ impl TextOrbitPlan {
     /// # Errors
     /// Those of [`find_from`].
     pub fn find(&self) -> Result<FoundOrbit> {
-        let units = &self.units;
-        let found = find_from(
-            &self.field()?,
-            &units.inward(&self.start),
-            self.period.map(|period| period / units.time),
-            &units.inward_accuracy(self.accuracy, self.atol_is_given),
-        )
-        .map_err(|error| units.outward_error(error, 0))?;
+        let mut found = self.found();
+        if let Err(Error::Underflow { .. } | Error::NotConverged { .. }) = found
+            && let Some(units) = self.model.units_below_doubles(&self.units, &self.start)
+        {
+            self.logarithmic.get_or_init(|| units);
+            // Where that is of no use either the first failure is told.
+            found = self.found().or(found);
+        }
+        let units = self.units();
+        let found = found.map_err(|error| units.outward_error(error, 0))?;
         let others = found.others.into_iter();
         let mut found = FoundOrbit {
             orbit: units.outward_orbit(found.orbit),
@@ -128,16 +134,30 @@ impl TextOrbitPlan {
         Ok(found)
     }
 
+    fn found(&self) -> Result<FoundOrbit> {
+        let units = self.units();
+        find_from(
+            &self.field()?,
+            &units.inward(&self.start),
+            self.period.map(|period| period / units.time),
+            &units.inward_accuracy(self.accuracy, self.atol_is_given),
+        )
+    }
+
+    fn units(&self) -> &MotionUnits {
+        self.logarithmic.get().unwrap_or(&self.units)
+    }
+
     /// The absolute tolerance of this accuracy as it is told.
     pub fn told_atol(&self, accuracy: &OrbitAccuracy) -> Value {
         let atol = accuracy.tolerances.atol;
         self.model
-            .absolute_tolerance(&self.units, atol, self.atol_is_given)
+            .absolute_tolerance(self.units(), atol, self.atol_is_given)
     }
 
     /// The field in the units in which the orbit is looked for.
     fn field(&self) -> Result<AnyField<'static>> {
-        self.units.field(&self.model.system)
+        self.units().field(&self.model.system)
     }
 
     /// With its multipliers within clusters, by the method that it was found by.
@@ -185,7 +205,12 @@ impl TextOrbitPlan {
             return None;
         }
         let vector = |y: &[f64]| Vector::from_column_slice(y);
-        let nodes = orbit.nodes_since_point().into_iter();
+        // A node where a state is below the doubles is gone past.
+        let is_held = |node: &(f64, &[f64])| {
+            let inward = self.units().inward(&vector(node.1));
+            inward.iter().all(|x| x.is_finite())
+        };
+        let nodes = orbit.nodes_since_point().into_iter().filter(is_held);
         let (OrbitAccuracy { tolerances, .. }, _) = self.accuracies(orbit);
         let method = Choice::named(orbit.method).unwrap_or(self.accuracy.method);
         Some(TextPlan {
@@ -201,7 +226,7 @@ impl TextOrbitPlan {
             method,
             tolerances,
             atol_is_given: self.atol_is_given,
-            units: self.units.clone(),
+            units: self.units().clone(),
             max_steps: self.accuracy.max_steps,
             model: self.model.clone(),
         })
@@ -219,9 +244,15 @@ impl TextOrbitPlan {
             true => second,
             false => worth(second, orbit),
         };
-        let units = &self.units;
+        let units = self.units();
         let inward = units.inward_accuracy(second, self.atol_is_given);
-        let again = crosscheck_of(&self.field()?, &units.inward_orbit(orbit), &inward)
+        let known = units.inward_orbit(orbit);
+        if !known.nodes.iter().flatten().all(|x| x.is_finite()) {
+            return Err(Error::Input(
+                "on the orbit a state is below the least double".into(),
+            ));
+        }
+        let again = crosscheck_of(&self.field()?, &known, &inward)
             .map_err(|error| units.outward_error(error, 0))?;
         let mut again = units.outward_crosscheck(again);
         self.complete(&mut again.orbit, &second)?;

@@ -41,9 +41,14 @@ pub fn run_text(plan: &TextPlan, sink: &mut dyn Sink) -> Result<RunOutcome> {
     outcome.work = work;
     match (end, plan.estimate) {
         (Ok(end), Some(companion)) if !outcome.stopped => {
-            let second = second_run(companion, plan, &mut outcome, sink);
-            let found =
-                second.and_then(|second| errors(plan, (&end, &second), &units, &mut outcome));
+            // What came to be followed by its logarithm is so from the start.
+            let begins = MotionUnits {
+                signs: units.signs.clone(),
+                ..plan.units.clone()
+            };
+            let second = second_run((companion, &begins), plan, &mut outcome, sink);
+            let found = second
+                .and_then(|second| errors(plan, (&end, &second), (&begins, &units), &mut outcome));
             match found {
                 Ok(errors) => {
                     let sizes = errors.iter().zip(&end).enumerate();
@@ -66,7 +71,7 @@ pub fn run_text(plan: &TextPlan, sink: &mut dyn Sink) -> Result<RunOutcome> {
         }
         (Err(error @ (Error::BlowUp { .. } | Error::TooFast { .. })), _) => {
             let companion = Companion::of(plan.tolerances, false);
-            let second = second_run(companion, plan, &mut outcome, sink);
+            let second = second_run((companion, &plan.units), plan, &mut outcome, sink);
             outcome.failure = Some(confirmed(error, second.err()));
         }
         _ => {}
@@ -90,7 +95,14 @@ impl Run<'_> {
         const LEGS: usize = 8;
         let plan = self.plan;
         let (mut now, end) = part.stretch.span;
-        let (mut here, mut legs) = (from, 1);
+        let mut legs = 1;
+        let mut here = part.units(&self.units).inward(&from);
+        // Interfaces keep their units, and what they are followed by.
+        let have_logarithms = match part.slides {
+            true => Vec::new(),
+            false => part.system.have_logarithms(),
+        };
+        let sinks = have_logarithms.contains(&true);
         loop {
             let units = part.units(&self.units);
             self.watch.in_units(&units);
@@ -106,20 +118,22 @@ impl Run<'_> {
                     true => watch.see(part.system, step),
                     false => Control::Rest(RESTS),
                 };
-                if grow
-                    && told != Control::Stop
-                    && let Some(larger) = units.outgrown(step.y1)
-                {
-                    let reached = units.outward(&Vector::from_column_slice(step.y1));
+                if told == Control::Stop {
+                    return Ok(told);
+                }
+                let sunken = sinks.then(|| units.sunken(&have_logarithms, step.y1));
+                let larger = || grow.then(|| units.outgrown(step.y1)).flatten();
+                if let Some(larger) = sunken.flatten().or_else(larger) {
+                    let reached = units.moved(&larger, step.y1);
                     outgrown = Some((step.t1 * units.time, reached, larger));
                     return Ok(Control::Stop);
                 }
                 Ok(told)
             };
-            let seen = plan.observed() || grow;
+            let seen = plan.observed() || grow || sinks;
             let observer = seen.then_some(&mut observer as AnyObserver<'_>);
             let span = (now / units.time, end / units.time);
-            let reached = integrator.flow(&field, span, &units.inward(&here), observer);
+            let reached = integrator.flow(&field, span, &here, observer);
             self.work += integrator.work();
             match (reached, outgrown) {
                 (Ok(_), Some((time, state, larger))) if time < end => {
@@ -210,9 +224,9 @@ fn of_run(plan: &TextPlan, error: Error) -> Error {
     }
 }
 
-/// The end of the run by another method.
+/// The end of the run by another method, which begins in these units.
 fn second_run(
-    companion: Companion,
+    (companion, begins): (Companion, &MotionUnits),
     plan: &TextPlan,
     outcome: &mut RunOutcome,
     sink: &mut dyn Sink,
@@ -221,7 +235,7 @@ fn second_run(
         if part.is_empty() {
             return Ok((from, false));
         }
-        let units = part.units(&plan.units);
+        let units = part.units(begins);
         let mut integrator = companion
             .in_time(units.time)
             .any_integrator(plan.max_steps)?;
@@ -244,22 +258,22 @@ fn second_run(
     })
 }
 
-/// The error of every state at the end: what the second run says, and what becomes of the rounding of the start. The states have come as far as
-/// `reached`.
+/// The error of every state at the end: what the second run says, which began in the first units, and what becomes of the rounding of the start.
+/// The states have come as far as `reached`.
 fn errors(
     plan: &TextPlan,
     (end, second): (&Vector, &Vector),
-    reached: &MotionUnits,
+    (begins, reached): (&MotionUnits, &MotionUnits),
     outcome: &mut RunOutcome,
 ) -> Result<Vec<f64>> {
     let tolerances = Tolerances::equal(GROWTH)?.stepping(plan.tolerances.max_step);
-    let tolerances = plan.units.inward_tolerances(tolerances, false);
+    let tolerances = begins.inward_tolerances(tolerances, false);
     let mut integrator = AnyIntegrator::new(Choice::Auto, tolerances, plan.max_steps)?;
     let count = plan.start.len();
     let mut tangent = Matrix::identity(count, count);
     let pieces = (PIECES / plan.stretches()?.len()).max(1);
     along(plan, |part, from| {
-        let units = part.units(&plan.units);
+        let units = part.units(begins);
         let field = units.field(part.system)?;
         let (begin, end) = part.stretch.span;
         let (begin, end) = (begin / units.time, end / units.time);
@@ -278,17 +292,18 @@ fn errors(
         }
         Ok((units.outward(&y), false))
     })?;
-    let sizes = &plan.units.sizes;
-    let rounded = plan
-        .units
-        .inward(&plan.start)
-        .map(|x| 0.5 * f64::EPSILON * x.abs());
+    // The rounding of a value is that of its logarithm, beside the logarithm's own.
+    let start = begins.inward(&plan.start);
+    let rounded = |i: usize| {
+        let own = begins.signs[i].abs();
+        0.5 * f64::EPSILON * (own + start[i].abs())
+    };
+    let last = begins.inward(end);
     // What is exact moves nothing, however much it would grow.
     let moved = |i: usize| -> f64 {
-        let exact = |j: &usize| rounded[*j] == 0.0;
-        let inexact = (0..count).filter(|j| !exact(j));
-        let all: f64 = inexact.map(|j| tangent[(i, j)].abs() * rounded[j]).sum();
-        sizes[i] * all
+        let inexact = (0..count).filter(|&j| rounded(j) != 0.0);
+        let all: f64 = inexact.map(|j| tangent[(i, j)].abs() * rounded(j)).sum();
+        begins.outward_error_of(i, last[i], all)
     };
     let error = |i: usize| {
         let rounding = ROUNDING * (reached.sizes[i] + end[i].abs());

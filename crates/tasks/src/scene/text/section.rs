@@ -103,7 +103,11 @@ impl TextSectionPlan {
         let (method, tolerances) = numerics(&options.numerics, model.units())?;
         let (state, value) = surface(options.surface.as_deref(), &model)?;
         let start = model.start(options.start.as_deref())?;
-        let units = model.motion_units(&start)?;
+        let mut units = model.motion_units_of_run(&start)?;
+        // No logarithm is that of a value of another sign.
+        if units.signs[state] * value <= 0.0 {
+            units.signs[state] = 0.0;
+        }
         let patience = match options.patience {
             Some(patience) => positive("patience", patience)?,
             None => usual_patience_of(&model, &units),
@@ -173,11 +177,15 @@ impl TextSectionPlan {
     }
 
     /// The section in the units of the run.
-    fn surface(&self) -> Surface {
-        let along = |i: usize, _: usize| f64::from(u8::from(i == self.state));
+    fn surface(&self, units: &MotionUnits) -> Surface {
+        let direction = units.direction(self.state);
+        let along = |i: usize, _: usize| match i == self.state {
+            true => direction,
+            false => 0.0,
+        };
         Surface {
             normal: Vector::from_fn(self.start.len(), along),
-            offset: self.value / self.units.sizes[self.state],
+            offset: direction * units.inward_value(self.state, self.value),
             direction: self.direction,
             chart: SeriesVariables::Plain,
         }
@@ -218,14 +226,33 @@ fn surface(text: Option<&str>, model: &TextModel) -> Result<(usize, f64)> {
 /// # Errors
 /// [`Error::Parameter`] if the integrator refuses its settings; a failure on the way is in [`SectionOutcome::failure`].
 pub fn run_text_section(plan: &TextSectionPlan, sink: &mut dyn Sink) -> Result<SectionOutcome> {
-    let units = &plan.units;
+    let (model, start) = (&plan.model, &plan.start);
+    let mut made = 0;
+    let outcome = run_in((plan, &plan.units), &mut made, sink)?;
+    if !matches!(outcome.failure, Some(Error::Underflow { .. })) {
+        return Ok(outcome);
+    }
+    match model.units_below_doubles(&plan.units, start) {
+        Some(units) if units.signs[plan.state] * plan.value >= 0.0 => {
+            run_in((plan, &units), &mut made, sink)
+        }
+        _ => Ok(outcome),
+    }
+}
+
+/// The run in these units, of which so many rows are made already.
+fn run_in(
+    (plan, units): (&TextSectionPlan, &MotionUnits),
+    made: &mut usize,
+    sink: &mut dyn Sink,
+) -> Result<SectionOutcome> {
     let field = &units.field(&plan.model.system)?;
     let tolerances = units.inward_tolerances(plan.tolerances, plan.atol_is_given);
     let means: Means<'_> = &|record, see| of_record(field, record, see);
     let settling = Settling {
         field,
         start: units.inward(&plan.start),
-        surface: plan.surface(),
+        surface: plan.surface(units),
         watching: Watching {
             skip: plan.skip,
             // One more, as for interfaces, so that the verdicts are on as many.
@@ -242,18 +269,19 @@ pub fn run_text_section(plan: &TextSectionPlan, sink: &mut dyn Sink) -> Result<S
         by_orbit: &|periodic| of_orbit(field, periodic, tolerances.max_step),
     };
     let columns = text_section_columns(&plan.model);
-    let mut made = 0;
+    let mut number = 0;
     let outcome = settling.run(
         &mut |at, sink| {
-            if made == plan.returns {
+            number += 1;
+            if number <= *made || *made == plan.returns {
                 return Control::Continue;
             }
             let row = TextReturn {
-                number: made,
+                number: *made,
                 time: at.time * units.time,
                 state: units.outward(&at.state).as_slice().to_vec(),
             };
-            made += 1;
+            *made += 1;
             let units = plan.model.units();
             let numbers = columns.iter().map(|column| column.number(&row, units));
             sink.row(&numbers.collect::<Vec<f64>>())
