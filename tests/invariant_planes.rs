@@ -124,7 +124,8 @@ fn orbits_and_sections_go_where_a_state_is_below_the_least_double() {
     let orbit = &made["result"]["orbit"];
     let [period, off] = ["/period/value", "/period/uncertainty"].map(|name| number(orbit, name));
     assert!(
-        (period - 1496.560_244_056_4).abs() <= off + 2e-9,
+        // In logarithms it is known to 1.2e-9.
+        (period - 1_496.560_244_056_4).abs() <= off + 1.2e-9,
         "{period} ± {off}"
     );
     assert!(off < 1e-6);
@@ -203,7 +204,7 @@ s = 0.0
 ";
     let file = crate::common::text::file("sunken-odd-and-even", text);
     let end = last(&format!("--system {file} --until 1500 --rtol 1e-11"));
-    assert_eq!(number(&end, "/x"), 0.0);
+    assert!(number(&end, "/x").abs() < f64::MIN_POSITIVE);
     let off = number(&end, "/y").ln() - (0.5_f64.ln() - 187.5);
     assert!(off.abs() < 1e-6, "{off:e}");
 }
