@@ -77,8 +77,8 @@ pub trait VectorField<const N: usize>: Send + Sync {
         State::from(self.own_factors().map(own))
     }
 
-    /// Whether J may hold NaN where f is smooth enough to step on, as that of formulas with sqrt(max(0, x)) does: steps are then made with
-    /// [`with_differences`]. Of other fields NaN is a mistake, and an error.
+    /// Whether J may hold NaN or infinite entries where f is continuous, as that of formulas with sqrt(max(0, x)) does: steps are then made with
+    /// [`with_differences`]. Of other fields these are a mistake, and an error.
     fn may_lack_slopes(&self) -> bool {
         false
     }
@@ -162,8 +162,8 @@ pub trait Analytic<const N: usize> {
     }
 }
 
-/// Returns J(y) with difference quotients in place of the entries that are NaN, as those of sqrt(max(0, x)) where x is negative: for methods that need
-/// no more of J than that they converge. Entries that are infinite stay, and all of a field that has its slopes ([`VectorField::may_lack_slopes`]).
+/// Returns J(y) with difference quotients in place of the entries that are not finite, as those of sqrt(max(0, x)) where x is negative or 0: for methods
+/// that need no more of J than that they converge. All entries of a field that has its slopes stay ([`VectorField::may_lack_slopes`]).
 ///
 /// A variable is displaced by a part of its own value and of how far it moves in the shortest time on J's diagonal, so that its unit does not matter. Where
 /// it is 0 and does not move there is no such part: the entry is 0, and the next step, which begins elsewhere, has another.
@@ -180,7 +180,7 @@ pub fn with_differences<const N: usize>(
     let rates = (0..N).map(|i| jacobian[(i, i)].abs());
     let fastest = rates.filter(|rate| rate.is_finite()).fold(0.0, f64::max);
     for j in 0..N {
-        let unknown: Vec<usize> = (0..N).filter(|&i| jacobian[(i, j)].is_nan()).collect();
+        let unknown: Vec<usize> = (0..N).filter(|&i| !jacobian[(i, j)].is_finite()).collect();
         if unknown.is_empty() {
             continue;
         }
