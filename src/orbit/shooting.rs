@@ -182,7 +182,7 @@ fn close_alone(tracer: &mut Tracer, field: &AnyField<'_>, guess: ShootingNodes) 
                 in_family: false,
             });
         }
-        // In a family corrections wander along it, by what is rounded.
+        // In a family of orbits the equations are singular, and rounding errors move the iterates along the family.
         if size > last && part == 1.0 && is_near_family(&linear, &shooting) {
             return Err(failed(size));
         }

@@ -161,9 +161,8 @@ impl<T: Element> Interpreted<'_, T> {
         explained
     }
 
-    /// Whether the series of the quantities whose signs the formula takes have come to their end within a step, as their zeros are looked for
-    /// by them: those of the states, which need not show them yet, may converge much farther. What has no zero there need not: the root of
-    /// what is 0 where the step ends, which is the lesser of two by far, does not.
+    /// Whether the zeros of the quantities whose signs the formula takes can be found from their series within a step. Each series must either
+    /// converge there, which those of the states do not show, or its first term must be so large that there is no zero.
     #[inline(always)]
     fn kinks_converge(&self, accuracy: &Accuracy, h: DoubleDouble) -> bool {
         let mut kinks = self.program.kinks.iter();
@@ -175,7 +174,8 @@ impl<T: Element> Interpreted<'_, T> {
         })
     }
 
-    /// Whether the first term of a row is larger than all others together, and those that are left out where they fall as those of a root do.
+    /// Whether the first term of a row is larger than the sum of all others. Terms beyond the order are counted as those of a square root, which
+    /// fall most slowly.
     #[cold]
     fn has_no_zero(&self, accuracy: &Accuracy, h: f64, row: usize, lane: usize) -> bool {
         let order = accuracy.order;

@@ -15,8 +15,8 @@ impl<T: Element> Interpreted<'_, T> {
             .hold_powers(|row, base| is_next_to_zero(base, off(row)))
     }
 
-    /// What rounding makes of every row, where a base of a power begins so close to 0 that it may be all rounding: behind the kink of |x + y|
-    /// it is what the sum cannot tell from 0, however short the steps that led there.
+    /// Bounds on the rounding errors of all rows, if a base of a power is so close to 0 that it may be nothing but rounding error, as |x + y| is
+    /// behind its kink. `None` otherwise: this is not computed in ordinary steps.
     #[inline(always)]
     fn noise_of_bases(&self) -> Option<Vec<f64>> {
         /// In changes of the base in about a step.
