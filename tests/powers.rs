@@ -108,3 +108,41 @@ fn whole_exponents_take_any_base() {
         assert!((at("inverse") - 1.0).abs() < 1e-7, "{method}");
     }
 }
+
+/// Dampers of any exponent below and above 1, and a root of what changes sign: slopes are infinite or kinked at each zero, where the run also begins.
+#[test]
+fn powers_of_any_exponent_pass_zero_with_estimates() {
+    let text = "name = \"damper\"
+states = [\"h\", \"q\"]
+[parameters]
+p = 0.5
+[rates]
+h = \"-q\"
+q = \"h - 0.3*q*abs(q)^(p-1) - 0.2*h*abs(h)^(-0.5)\"
+[start]
+h = 1.0
+q = 0.0
+";
+    let file = file("damper", text);
+    for p in [0.1, 0.3, 0.5, 0.75, 1.25] {
+        let end = |method: &str, rtol: f64| {
+            let made = object(&format!(
+                "integrate --system {file} --set p={p} --until 30 --rtol {rtol} --method {method} --final-only --estimate-error"
+            ));
+            ["h", "q", "h_uncertainty", "q_uncertainty"]
+                .map(|name| number(&made, &format!("/result/final/{name}")))
+        };
+        let fine = end("rodas5p", 1e-12);
+        for method in methods() {
+            let coarse = end(method, 1e-8);
+            for i in 0..2 {
+                let apart = (coarse[i] - fine[i]).abs();
+                let within = coarse[i + 2] + fine[i + 2];
+                assert!(
+                    apart <= within && within < 1e-5,
+                    "{p} {method}: {apart:e} {within:e}"
+                );
+            }
+        }
+    }
+}

@@ -121,6 +121,16 @@ pub struct Expressions {
 }
 
 impl Expressions {
+    /// Whether there are powers that are not whole, or roots: their slopes may be infinite at a zero of the base.
+    pub fn take_powers(&self) -> bool {
+        self.operations.iter().any(|operation| {
+            matches!(
+                operation,
+                Operation::Power(..) | Operation::Call(Function::Sqrt, _)
+            )
+        })
+    }
+
     /// The values of all formulas.
     ///
     /// # Panics

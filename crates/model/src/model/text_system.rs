@@ -100,6 +100,11 @@ impl TextSystem {
         self.rates.own_factors(self.states.len(), &self.parameters)
     }
 
+    /// Whether the formulas take powers that are not whole, or roots: their slopes may be infinite at a zero of the base.
+    pub fn takes_powers(&self) -> bool {
+        self.rates.take_powers()
+    }
+
     /// For every state whether it can be followed by its logarithm: it is a factor of its own rate, and the formulas show what that is over it.
     pub fn have_logarithms(&self) -> Vec<bool> {
         let mut all = self.own_factors();

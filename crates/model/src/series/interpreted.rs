@@ -90,6 +90,10 @@ pub struct Interpreted<'a, T: Element> {
     noise: Vec<T>,
     /// The derivatives of the series where a step may lead.
     slopes: Vec<T>,
+    /// The step over a zero of the base of a power, in units of the series; 0 where it leads over none.
+    crossing: f64,
+    /// The largest absolute values that the variables had where steps began, if there are such bases.
+    largest_so_far: Vec<T>,
     /// Whether a variable is counted relative to itself alone, as it is a factor of its own rate.
     relative: Vec<bool>,
 }
@@ -149,7 +153,9 @@ impl<'a, T: Element> Interpreted<'a, T> {
             rejected: 0,
             zeros: Vec::new(),
             noise: zeros.clone(),
-            slopes: zeros,
+            slopes: zeros.clone(),
+            crossing: 0.0,
+            largest_so_far: zeros,
             relative,
         }
     }
@@ -162,13 +168,19 @@ impl<'a, T: Element> Interpreted<'a, T> {
         } else {
             atol
         };
-        size.mul_add(size.like(rtol), size.like(atol))
+        let may_err = size.mul_add(size.like(rtol), size.like(atol));
+        if self.crossing != 0.0 {
+            Element::max(may_err, self.rounding_of_sign(i))
+        } else {
+            may_err
+        }
     }
 
     /// Begins at x.
     pub(super) fn begin(&mut self, x: &[T]) {
         self.reached.x.copy_from_slice(x);
         self.reached.lost.fill(self.any.like(0.0));
+        self.largest_so_far.fill(self.any.like(0.0));
         self.probed = false;
         self.rejected = 0;
         self.record_here();
@@ -269,17 +281,24 @@ impl<'a, T: Element> Interpreted<'a, T> {
     /// 3.2, in the norm that the tolerances make).
     #[inline(always)]
     pub(super) fn longest(&self, accuracy: &Accuracy) -> f64 {
-        let order = accuracy.order;
-        let log_of = |j: usize| rough_log2(self.largest(j, accuracy.tolerances));
-        let (before, last) = (log_of(order - 1), log_of(order));
-        let log = f64::min(-before / (order - 1) as f64, -last / order as f64);
-        // Where the last term is larger than the one before, that is mostly chance.
-        let log = if before - last - log >= 0.0 {
+        let (log, falls) = self.by_last_terms(accuracy);
+        let log = if falls {
             log
         } else {
             self.while_terms_fall(accuracy, log)
         };
         SAFETY * rough_exp2(log)
+    }
+
+    /// The logarithm of the step at which the last two terms reach what may err, and whether the last one falls: where it is larger than the one
+    /// before, that is mostly chance.
+    #[inline(always)]
+    fn by_last_terms(&self, accuracy: &Accuracy) -> (f64, bool) {
+        let order = accuracy.order;
+        let log_of = |j: usize| rough_log2(self.largest(j, accuracy.tolerances));
+        let (before, last) = (log_of(order - 1), log_of(order));
+        let log = f64::min(-before / (order - 1) as f64, -last / order as f64);
+        (log, before - last - log >= 0.0)
     }
 
     /// The largest j-th coefficient, in what may err.
@@ -338,6 +357,7 @@ impl<T: Element> NullaryFnOnce for Advance<'_, '_, T> {
         solution.stay_within(limit);
         solution.expand(accuracy.order);
         let h = solution.longest(accuracy);
+        let h = solution.over_zero(accuracy, h, limit);
         solution.advance_by(accuracy, h, limit)
     }
 }

@@ -9,7 +9,7 @@ use std::cell::Cell;
 /// Part of the estimated step that is taken.
 pub(super) const SAFETY: f64 = 0.95;
 /// Times that a step is halved because it leads where the formula has no meaning.
-pub(super) const HALVINGS: usize = 60;
+const HALVINGS: usize = 60;
 /// By which the unit of time is shortened while the coefficients overflow, and how often.
 pub(super) const SHORTER: f64 = 1.0 / (1u64 << 40) as f64;
 pub(super) const SHORTER_UNITS: usize = 24;

@@ -11,7 +11,7 @@ use crate::number::polynomial::{Crossing, roots};
 use crate::series::element::Element;
 use crate::series::program::Source;
 use crate::series::rounding::rounding;
-use crate::series::stepper::{BISECTIONS, HALVINGS};
+use crate::series::stepper::BISECTIONS;
 use crate::series::{Accuracy, REFERENCE_ORDER};
 
 /// How far the rates at the end of a step may be off the derivative of the series: times the length of the step, in units of what the
@@ -26,6 +26,8 @@ const NOISIER: f64 = 8.0;
 const BEFORE: f64 = 0.999;
 /// The part of a step at which the series is compared with the rates beside its end: what rises and falls again within a step is seen there.
 const MIDDLE: f64 = 0.5;
+/// Times that a step is halved: one that begins at the zero of a power's base is next to nothing where values may not err absolutely.
+const HALVINGS: usize = 200;
 /// What leads behind a branch point.
 const BEHIND: f64 = 1.0 + 4.0 * f64::EPSILON;
 
@@ -50,6 +52,7 @@ impl<T: Element> Interpreted<'_, T> {
         let both = self.is_solution_at_both(accuracy, [step * MIDDLE, step]);
         let followed = both && self.kinks_converge(accuracy, step);
         if !followed || self.meets_kink(accuracy.order, step) {
+            self.crossing = 0.0;
             step = self.shortened(accuracy, step);
             if !step.is_finite() {
                 return step;
@@ -170,6 +173,7 @@ impl<T: Element> Interpreted<'_, T> {
             (0..T::LANES).all(|lane| {
                 self.converges(accuracy, h.hi(), row, lane)
                     || self.has_no_zero(accuracy, h.hi(), row, lane)
+                    || self.crosses_zero(row, lane)
             })
         })
     }
@@ -214,7 +218,7 @@ impl<T: Element> Interpreted<'_, T> {
     #[inline(always)]
     fn is_solution(&self, accuracy: &Accuracy, h: DoubleDouble) -> bool {
         let step = self.any.like(h.hi().abs());
-        let by_order = if self.holds_powers(accuracy.order) {
+        let by_order = if self.crossing != 0.0 || self.holds_powers(accuracy.order) {
             1.0
         } else {
             EXPLAINED
@@ -276,6 +280,10 @@ impl<T: Element> Interpreted<'_, T> {
         if self.program.kinks.is_empty() && self.program.branch_points.is_empty() {
             return false;
         }
+        if self.crossing != 0.0 {
+            // What is crossed itself is known; a root without a value at the end is seen by the check there.
+            return self.first_zero(order, h, Watched::Kinks).is_some();
+        }
         self.passes_kink()
             || self.first_zero(order, h, Watched::Kinks).is_some()
             || self.first_zero(order, h, Watched::Branches).is_some()
@@ -316,6 +324,9 @@ impl<T: Element> Interpreted<'_, T> {
         let mut first: Option<Zero> = None;
         for &row in rows {
             for lane in 0..T::LANES {
+                if self.crosses_zero(row, lane) {
+                    continue;
+                }
                 let mut series = [0.0; REFERENCE_ORDER + 1];
                 let known = &mut series[..order];
                 for (to, c) in known.iter_mut().zip(self.rows.row(row)) {

@@ -284,7 +284,8 @@ fn errors(
                 break;
             }
             let span = (time(piece), time(piece + 1));
-            let (next, grown) = growth(&mut integrator, &field, span, &y)?;
+            let by_differences = part.system.takes_powers();
+            let (next, grown) = growth(&mut integrator, &field, span, &y, by_differences)?;
             outcome.work += integrator.work();
             y = next;
             // V_H is exact, where it is a state.
@@ -312,17 +313,18 @@ fn errors(
     Ok((0..count).map(error).collect())
 }
 
-/// The state at the end of a span with its derivatives in the start, of which a digit will do: by differences where a formula has no derivatives on the
-/// way, as where it overflows and its inverse is 0.
+/// The state at the end of a span with its derivatives in the start, of which a digit will do: by differences if this is asked for, as where slopes may
+/// be infinite, and where a formula has no derivatives on the way, as where it overflows and its inverse is 0.
 fn growth(
     integrator: &mut AnyIntegrator,
     field: &AnyField<'_>,
     span: (f64, f64),
     y: &Vector,
+    by_differences: bool,
 ) -> Result<(Vector, Matrix)> {
     /// The distance of the starts, in units of a variable, or of the largest where that is 0: far above the tolerance.
     const APART: f64 = 1e-3;
-    if let Ok((next, grown)) = integrator.derivatives(field, span, y, &[]) {
+    if !by_differences && let Ok((next, grown)) = integrator.derivatives(field, span, y, &[]) {
         return Ok((next, grown.start));
     }
     let next = integrator.flow(field, span, y, None)?;
