@@ -7,6 +7,7 @@ often (medians are printed), the program twinslip, and names of oscillators if n
 import contextlib
 import io
 import json
+import math
 import os
 import resource
 import statistics
@@ -79,7 +80,8 @@ def ours(program, name, parameter, low, high):
     special = json.loads(ended.stdout)["result"]["special"] if ended.stdout else []
     first = [one for one in special if one["branch"] == special[0]["branch"]]
     for one in first:
-        values = [one[of] for of in (parameter, "period")]
+        # Without a period where it grows without bound.
+        values = [one[of] or {"value": math.inf, "uncertainty": math.inf} for of in (parameter, "period")]
         points.append((one["label"], *(number for of in values for number in (of["value"], of["uncertainty"]))))
     return points, len(special) - len(first), ended.returncode
 

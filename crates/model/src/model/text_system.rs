@@ -7,7 +7,7 @@ use crate::number::{DoubleDouble, Interval, Jet, Real};
 use crate::series::{ByRecording, Jet3, RecordedExpressions, Solution, Tangent, TaylorMap};
 use std::borrow::Cow;
 use std::collections::BTreeSet;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 
 /// Directions in which derivatives are made at once.
 const AT_ONCE: usize = 4;
@@ -260,7 +260,7 @@ fn kept(name: &str) -> &'static str {
 
 /// A [`TextSystem`] of N variables.
 #[derive(Debug, Clone)]
-pub struct TextField<'a, const N: usize>(Cow<'a, TextSystem>);
+pub struct TextField<'a, const N: usize>(Cow<'a, TextSystem>, OnceLock<[bool; N]>);
 
 impl<'a, const N: usize> TextField<'a, N> {
     /// The field of a system that stays with its owner, or of one's own.
@@ -273,7 +273,7 @@ impl<'a, const N: usize> TextField<'a, N> {
             let must = format!("{N}, as many as the field is asked for");
             return Err(Error::parameter("the number of states", count, must));
         }
-        Ok(TextField(system))
+        Ok(TextField(system, OnceLock::new()))
     }
 
     fn recorded(&self) -> RecordedExpressions<'_, N> {
@@ -330,8 +330,11 @@ impl<const N: usize> VectorField<N> for TextField<'_, N> {
     }
 
     fn own_factors(&self) -> [bool; N] {
-        let all = self.0.own_factors();
-        std::array::from_fn(|i| all[i])
+        // Each arc of an orbit asks.
+        *self.1.get_or_init(|| {
+            let all = self.0.own_factors();
+            std::array::from_fn(|i| all[i])
+        })
     }
 
     fn parametrised(&self) -> Option<&dyn Parametrised<N>> {

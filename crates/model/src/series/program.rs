@@ -6,6 +6,7 @@
 
 use super::later::LaterOrders;
 use crate::number::{Balance, DoubleDouble, Ratio};
+use std::sync::{Arc, OnceLock};
 
 /// A quantity: a number, or the row of its coefficients.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -230,6 +231,8 @@ pub(super) struct Program {
     pub branch_points: Vec<usize>,
     /// Whether it holds only where it was recorded, as the formula asks for values.
     pub branches: bool,
+    /// The same in two lanes, once that was asked for: of copies as well.
+    pub in_two_lanes: Arc<OnceLock<Option<Program>>>,
 }
 
 impl Program {
@@ -248,6 +251,7 @@ impl Program {
             bases: Vec::new(),
             branch_points: Vec::new(),
             branches: false,
+            in_two_lanes: Arc::default(),
         }
     }
 

@@ -61,6 +61,7 @@ impl<'a> Recording<'a> {
             if let Some(program) = program.in_two_lanes() {
                 let any = Pair::new(simd, [0.0; 2]);
                 let (record, watched) = (self.record, self.slip_rates);
+                let program = program.clone();
                 return Box::new(Interpreted::of_program(record, program, watched, ROOM, any));
             }
         }
@@ -270,7 +271,7 @@ pub fn both_ways(
                 lanes[row].with_lane(lane, x)
             };
         }
-        all.extend(compiled::both_ways(&program, ROOM, (lanes, any)));
+        all.extend(compiled::both_ways(program, ROOM, (lanes, any)));
     }
     all
 }
