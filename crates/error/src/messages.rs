@@ -114,11 +114,7 @@ pub(super) fn too_many_steps(units: &MessageUnits, limit: usize, t: f64, end: f6
 
 pub(super) fn non_finite(units: &MessageUnits, what: &str, t: f64) -> String {
     let t = measured(t, units.time);
-    let ends = match what {
-        "the right-hand side" => ": the solution may end at or before that time",
-        _ => "",
-    };
-    format!("{what} is not finite at t = {t}{ends}")
+    format!("{what} is not finite at t = {t}, where the solution may end")
 }
 
 pub(super) fn underflow(units: &MessageUnits, variable: usize, t: f64) -> String {

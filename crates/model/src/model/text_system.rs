@@ -260,7 +260,11 @@ fn kept(name: &str) -> &'static str {
 
 /// A [`TextSystem`] of N variables.
 #[derive(Debug, Clone)]
-pub struct TextField<'a, const N: usize>(Cow<'a, TextSystem>, OnceLock<[bool; N]>);
+pub struct TextField<'a, const N: usize> {
+    system: Cow<'a, TextSystem>,
+    /// Once they were asked for: each arc of an orbit asks.
+    own_factors: OnceLock<[bool; N]>,
+}
 
 impl<'a, const N: usize> TextField<'a, N> {
     /// The field of a system that stays with its owner, or of one's own.
@@ -273,29 +277,34 @@ impl<'a, const N: usize> TextField<'a, N> {
             let must = format!("{N}, as many as the field is asked for");
             return Err(Error::parameter("the number of states", count, must));
         }
-        Ok(TextField(system, OnceLock::new()))
+        Ok(TextField {
+            system,
+            own_factors: OnceLock::new(),
+        })
     }
 
     fn recorded(&self) -> RecordedExpressions<'_, N> {
         RecordedExpressions {
-            rates: &self.0.rates,
-            slip_rates: self.0.slip_rates.as_deref(),
-            parameters: &self.0.parameters,
+            rates: &self.system.rates,
+            slip_rates: self.system.slip_rates.as_deref(),
+            parameters: &self.system.parameters,
         }
     }
 }
 
 impl<const N: usize> VectorField<N> for TextField<'_, N> {
     fn f(&self, y: &State<N>) -> State<N> {
-        State::from_column_slice(&self.0.rates(y.as_slice()))
+        State::from_column_slice(&self.system.rates(y.as_slice()))
     }
 
     fn jacobian(&self, y: &State<N>) -> Jacobian<N> {
-        Jacobian::from_row_slice(&self.0.jacobian(y.as_slice()))
+        Jacobian::from_row_slice(&self.system.jacobian(y.as_slice()))
     }
 
     fn second_derivative(&self, y: &State<N>, u: &State<N>, v: &State<N>) -> State<N> {
-        let made = self.0.second_derivative([y, u, v].map(|x| x.as_slice()));
+        let made = self
+            .system
+            .second_derivative([y, u, v].map(|x| x.as_slice()));
         State::from_column_slice(&made)
     }
 
@@ -315,12 +324,12 @@ impl<const N: usize> VectorField<N> for TextField<'_, N> {
         let matrix = |all: Vec<f64>| Jacobian::from_row_slice(&all);
         Some(ExactField {
             f: [
-                state(doubles(self.0.rates(&x))),
-                state(off(self.0.rates(&within))),
+                state(doubles(self.system.rates(&x))),
+                state(off(self.system.rates(&within))),
             ],
             jacobian: [
-                matrix(doubles(self.0.jacobian(&x))),
-                matrix(off(self.0.jacobian(&within))),
+                matrix(doubles(self.system.jacobian(&x))),
+                matrix(off(self.system.jacobian(&within))),
             ],
         })
     }
@@ -330,9 +339,8 @@ impl<const N: usize> VectorField<N> for TextField<'_, N> {
     }
 
     fn own_factors(&self) -> [bool; N] {
-        // Each arc of an orbit asks.
-        *self.1.get_or_init(|| {
-            let all = self.0.own_factors();
+        *self.own_factors.get_or_init(|| {
+            let all = self.system.own_factors();
             std::array::from_fn(|i| all[i])
         })
     }
@@ -348,15 +356,15 @@ impl<const N: usize> VectorField<N> for TextField<'_, N> {
 
 impl<const N: usize> Parametrised<N> for TextField<'_, N> {
     fn names(&self) -> &[&'static str] {
-        &self.0.names
+        &self.system.names
     }
 
     fn parameter_derivative(&self, y: &State<N>, place: usize) -> State<N> {
-        State::from_column_slice(&self.0.parameter_derivative(y.as_slice(), place))
+        State::from_column_slice(&self.system.parameter_derivative(y.as_slice(), place))
     }
 
     fn parameter_jacobian(&self, y: &State<N>, place: usize) -> Jacobian<N> {
-        let column = |j: usize| self.0.mixed_derivative(y.as_slice(), j, place);
+        let column = |j: usize| self.system.mixed_derivative(y.as_slice(), j, place);
         let columns: Vec<f64> = (0..N).flat_map(column).collect();
         Jacobian::from_column_slice(&columns)
     }

@@ -232,7 +232,7 @@ pub(super) struct Program {
     /// Whether it holds only where it was recorded, as the formula asks for values.
     pub branches: bool,
     /// The same in two lanes, once that was asked for: of copies as well.
-    pub in_two_lanes: Arc<OnceLock<Option<Program>>>,
+    pub two_lanes: Arc<OnceLock<Option<Program>>>,
 }
 
 impl Program {
@@ -251,7 +251,7 @@ impl Program {
             bases: Vec::new(),
             branch_points: Vec::new(),
             branches: false,
-            in_two_lanes: Arc::default(),
+            two_lanes: Arc::default(),
         }
     }
 

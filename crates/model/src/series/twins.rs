@@ -21,9 +21,7 @@ enum At {
 impl Program {
     /// The same program in two lanes, by the two variables that make most pairs of operations; `None` where few are alike.
     pub fn in_two_lanes(&self) -> Option<&Program> {
-        self.in_two_lanes
-            .get_or_init(|| self.folded_in_two())
-            .as_ref()
+        self.two_lanes.get_or_init(|| self.folded_in_two()).as_ref()
     }
 
     fn folded_in_two(&self) -> Option<Program> {

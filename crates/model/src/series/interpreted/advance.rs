@@ -60,6 +60,7 @@ impl<T: Element> Interpreted<'_, T> {
             time = step * self.unit;
             self.look_at(accuracy.order, step);
         }
+        self.crossing = 0.0;
         self.probed = true;
         std::mem::swap(&mut self.reached, &mut self.next);
         self.next_unit = power_of_two(time.hi().abs());

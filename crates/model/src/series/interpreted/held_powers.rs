@@ -24,7 +24,6 @@ impl<T: Element> Interpreted<'_, T> {
     /// without what it grants other steps, says whether it is.
     #[inline(always)]
     pub(super) fn over_zero(&mut self, accuracy: &Accuracy, h: f64, limit: DoubleDouble) -> f64 {
-        self.crossing = 0.0;
         if self.program.bases.is_empty() {
             return h;
         }
