@@ -6,6 +6,7 @@
 
 use super::later::LaterOrders;
 use crate::number::{Balance, DoubleDouble, Ratio};
+#[cfg(target_arch = "x86_64")]
 use std::sync::{Arc, OnceLock};
 
 /// A quantity: a number, or the row of its coefficients.
@@ -232,6 +233,7 @@ pub(super) struct Program {
     /// Whether it holds only where it was recorded, as the formula asks for values.
     pub branches: bool,
     /// The same in two lanes, once that was asked for: of copies as well.
+    #[cfg(target_arch = "x86_64")]
     pub two_lanes: Arc<OnceLock<Option<Program>>>,
 }
 
@@ -251,6 +253,7 @@ impl Program {
             bases: Vec::new(),
             branch_points: Vec::new(),
             branches: false,
+            #[cfg(target_arch = "x86_64")]
             two_lanes: Arc::default(),
         }
     }
