@@ -88,6 +88,7 @@ mod polynomials;
 mod powers;
 mod programs;
 mod programs_input;
+mod radau;
 mod ratios;
 mod reproduce;
 mod resonances_of_systems;

@@ -262,8 +262,8 @@ class Commands:
             With ``estimate_error``: by a run in double-double arithmetic, of 31 digits, some
             hundred times slower than taylor
         method : str, optional
-            Integrator: auto, taylor, rodas5p, rodas4, rosenbrock23, cvode-bdf or cvode-adams
-            [default: auto]
+            Integrator: auto, taylor, rodas5p, rodas4, rosenbrock23, radau, cvode-bdf or cvode-
+            adams [default: auto]
         rtol : float, optional
             Relative local error tolerance [default: 1e-8]
         atol : float, optional
@@ -387,9 +387,10 @@ class Commands:
             in a build without SUNDIALS]
         method : str, optional
             The method of the flow and its derivatives: auto (taylor), taylor, cvode-bdf, cvode-
-            adams, rodas5p, rodas4 or rosenbrock23 [default: auto]
+            adams, rodas5p, rodas4, rosenbrock23 or radau [default: auto]
         rtol : float, optional
-            Relative local error tolerance [default: 1e-15 of taylor, 1e-11 of the others]
+            Relative local error tolerance [default: 1e-15 of taylor, 1e-13 of radau, 1e-11 of the
+            others]
         atol : float, optional
             Absolute local error tolerance of tau and ln psi [default: as ``rtol``]
         max_step : float, optional
@@ -463,8 +464,8 @@ class Commands:
             Lyapunov exponents: of a periodic orbit by its multipliers, else along as many returns
             of a run of their own; without them chaos is not recognised
         method : str, optional
-            Integrator: auto, taylor, rodas5p, rodas4, rosenbrock23, cvode-bdf or cvode-adams
-            [default: auto]
+            Integrator: auto, taylor, rodas5p, rodas4, rosenbrock23, radau, cvode-bdf or cvode-
+            adams [default: auto]
         rtol : float, optional
             Relative local error tolerance [default: 1e-8]
         atol : float, optional

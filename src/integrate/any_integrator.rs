@@ -3,7 +3,7 @@
 use super::any_field::{AnyField, of_dimension};
 use super::any_step::AnyObserver;
 use super::static_field::ArcByArc;
-use super::{Choice, Taylor, Tolerances, Work};
+use super::{Choice, Radau, Taylor, Tolerances, Work};
 use crate::error::Result;
 use crate::field::{Matrix, Vector};
 
@@ -15,10 +15,11 @@ pub struct AnyIntegrator {
     pub(super) work: Work,
 }
 
-/// Taylor's method knows no dimension; the others are made where they are called.
+/// Taylor's and Radau's methods know no dimension; the others are made where they are called.
 #[derive(Debug, Clone)]
 pub(super) enum Method {
     Taylor(Taylor),
+    Radau(Radau),
     Other {
         choice: Choice,
         tolerances: Tolerances,
@@ -51,6 +52,7 @@ impl AnyIntegrator {
         let taylor = Taylor::new(tolerances, max_steps)?;
         let method = match choice {
             Choice::Taylor => Method::Taylor(taylor),
+            Choice::Radau => Method::Radau(Radau::new(tolerances, max_steps)?),
             choice => Method::Other {
                 choice,
                 tolerances,
@@ -88,7 +90,7 @@ impl AnyIntegrator {
 
     /// Whether [`AnyIntegrator::derivatives`] has those in parameters.
     pub fn differentiates(&self) -> bool {
-        matches!(self.method, Method::Taylor(_))
+        !matches!(self.method, Method::Other { .. })
     }
 
     /// The state at `t.1` from `y0` at `t.0`.

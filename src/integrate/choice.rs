@@ -1,6 +1,7 @@
 //! From the name of a method to an integrator: the one place that knows them all.
 
 use super::auto::Auto;
+use super::radau::Radau;
 use super::rosenbrock::{Rosenbrock, RosenbrockMethod};
 use super::taylor::Taylor;
 use super::{Integrator, Tolerances};
@@ -17,6 +18,8 @@ pub enum Choice {
     Taylor,
     /// A Rosenbrock method.
     Rosenbrock(RosenbrockMethod),
+    /// A Radau IIA method.
+    Radau,
     /// CVODES, of SUNDIALS.
     #[cfg(feature = "sundials")]
     Cvode(sundials::MultistepMethod),
@@ -49,7 +52,8 @@ impl Choice {
         #[cfg(not(feature = "sundials"))]
         let cvode = [];
         let taylor = std::iter::once(Choice::Taylor);
-        taylor.chain(rosenbrock).chain(cvode).collect()
+        let implicit = rosenbrock.into_iter().chain([Choice::Radau]);
+        taylor.chain(implicit).chain(cvode).collect()
     }
 
     /// The names of the methods of this build, `auto` first.
@@ -71,6 +75,7 @@ impl Choice {
         match name {
             "auto" => Ok(Choice::Auto),
             "taylor" => Ok(Choice::Taylor),
+            Radau::NAME => Ok(Choice::Radau),
             #[cfg(feature = "sundials")]
             "cvode-bdf" => Ok(Choice::Cvode(sundials::MultistepMethod::Bdf)),
             #[cfg(feature = "sundials")]
@@ -98,6 +103,7 @@ impl Choice {
             Choice::Auto => Box::new(Auto::new(tolerances, max_steps)?),
             Choice::Taylor => Box::new(Taylor::new(tolerances, max_steps)?),
             Choice::Rosenbrock(method) => Box::new(Rosenbrock::new(method, tolerances, max_steps)?),
+            Choice::Radau => Box::new(Radau::new(tolerances, max_steps)?),
             #[cfg(feature = "sundials")]
             Choice::Cvode(method) => Box::new(CvodeIntegrator::new(method, tolerances, max_steps)?),
         })
@@ -109,6 +115,7 @@ impl Choice {
             Choice::Auto => "auto",
             Choice::Taylor => "taylor",
             Choice::Rosenbrock(method) => method.tableau().name,
+            Choice::Radau => Radau::NAME,
             #[cfg(feature = "sundials")]
             Choice::Cvode(sundials::MultistepMethod::Bdf) => CVODE[0],
             #[cfg(feature = "sundials")]
@@ -137,6 +144,7 @@ impl Choice {
                 let used = weights.iter().filter(|row| row.iter().any(|&d| d != 0.0));
                 1 + used.count()
             }
+            Choice::Radau => 7,
             #[cfg(feature = "sundials")]
             Choice::Cvode(sundials::MultistepMethod::Bdf) => 5,
             #[cfg(feature = "sundials")]
@@ -161,6 +169,9 @@ impl Choice {
             }
             Choice::Rosenbrock(RosenbrockMethod::Ros23) => {
                 "order 2, the pair of ode23s, which the paper used: slow at tight tolerances"
+            }
+            Choice::Radau => {
+                "order 9 or 13: the fewest steps on stiff scenes at tight tolerances, each by Newton's method"
             }
             #[cfg(feature = "sundials")]
             Choice::Cvode(sundials::MultistepMethod::Bdf) => {

@@ -12,6 +12,7 @@ mod choice;
 #[cfg(feature = "sundials")]
 mod cvode;
 mod motion_units;
+mod radau;
 pub(crate) mod rosenbrock;
 pub(crate) mod singularity;
 mod static_field;
@@ -27,6 +28,7 @@ pub use choice::{Choice, HasSeries};
 #[cfg(feature = "sundials")]
 pub use cvode::CvodeIntegrator;
 pub use motion_units::MotionUnits;
+pub use radau::Radau;
 pub use rosenbrock::{Rosenbrock, RosenbrockMethod};
 #[doc(hidden)]
 pub use tableau::Tableau;

@@ -3,7 +3,7 @@
 use super::any_field::AnyExact;
 use super::any_integrator::{AnyIntegrator, FlowDerivatives, Method};
 use super::any_step::{AnyObserver, AnyStep};
-use super::{Control, Integrator, Observer, Step, Taylor, Work};
+use super::{Control, Integrator, Observer, Radau, Step, Taylor, Work};
 use crate::error::{Error, Result};
 use crate::field::{ExactField, Jacobian, Matrix, State, Vector, VectorField, state, vector};
 use crate::series::{Jet3, Tangent};
@@ -212,6 +212,10 @@ impl<const N: usize> Flows for Static<'_, N> {
                     let end = taylor.flow(self.field(), t, &state(y0), observer);
                     (end, Integrator::<N>::work(taylor))
                 }
+                Method::Radau(radau) => {
+                    let end = radau.flow(self.field(), t, &state(y0), observer);
+                    (end, Integrator::<N>::work(radau))
+                }
                 Method::Other {
                     choice,
                     tolerances,
@@ -259,6 +263,7 @@ impl<const N: usize> Flows for Static<'_, N> {
                 let tangent = taylor.tangent(field, free)?;
                 Tangents::Series(taylor, tangent)
             }
+            Method::Radau(radau) => Tangents::Radau(radau, free),
             Method::Other {
                 choice,
                 tolerances,
@@ -301,6 +306,8 @@ struct StaticArcs<'f, const N: usize> {
 /// What makes the derivatives, made once for all arcs: CVODES allocates a hundred vectors.
 enum Tangents<'f, const N: usize> {
     Series(&'f mut Taylor, Box<dyn Tangent<N> + 'f>),
+    /// With the places of the parameters.
+    Radau(&'f mut Radau, &'f [usize]),
     Other(Box<dyn Integrator<N>>),
 }
 
@@ -321,6 +328,18 @@ impl<const N: usize> ArcByArc for StaticArcs<'_, N> {
                     log_transverse: made.log_transverse,
                 };
                 Ok((vector(&end), derivatives))
+            }
+            Tangents::Radau(method, free) => {
+                let made = method.derivatives(field, t, &start, free);
+                *self.work = Integrator::<N>::work(*method);
+                let (end, columns, volume) = made?;
+                let derivatives = FlowDerivatives {
+                    start: columns.columns(0, N).into_owned(),
+                    parameters: columns.columns_range(N..).into_owned(),
+                    log_determinant: Some(volume),
+                    log_transverse: None,
+                };
+                Ok((end, derivatives))
             }
             Tangents::Other(method) => {
                 let made = method.tangent_flow(field, t, &start);

@@ -6,7 +6,7 @@ import shlex
 from dataclasses import dataclass, field
 
 LAWS = ["spinodal", "bounded", "regularised-ageing", "dieterich-ruina", "slip"]
-METHODS = ["auto", "taylor", "cvode-bdf", "cvode-adams", "rodas5p", "rodas4", "rosenbrock23"]
+METHODS = ["auto", "taylor", "cvode-bdf", "cvode-adams", "rodas5p", "rodas4", "rosenbrock23", "radau"]
 KINDS = ["pitchfork", "saddle-node", "hopf", "orbit-pitchfork", "orbit-saddle-node", "period-doubling", "torus"]
 
 NO_NUMBERS = [

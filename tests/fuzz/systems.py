@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Integrates random systems from files by three methods, and holds their bounds against each other.
+"""Integrates random systems from files by four methods, and holds their bounds against each other.
 
     tests/fuzz/systems.py --binary target/release/twinslip --count 20000 --seed 1 --jobs 2
 
@@ -17,7 +17,7 @@ import sys
 import tempfile
 from collections import Counter
 
-METHODS = ["taylor", "rodas5p", "cvode-bdf"]
+METHODS = ["taylor", "rodas5p", "radau", "cvode-bdf"]
 STATES = ["x", "y", "z", "w"]
 #: Seconds; who takes longer is counted, and is no fault: tests never time anything.
 LIMIT = 10

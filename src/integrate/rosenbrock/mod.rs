@@ -308,7 +308,7 @@ impl<const N: usize> Integrator<N> for Rosenbrock<N> {
     }
 }
 
-fn check_times(t: (f64, f64)) -> Result<()> {
+pub(super) fn check_times(t: (f64, f64)) -> Result<()> {
     for (name, time) in [("start time", t.0), ("end time", t.1)] {
         if !time.is_finite() {
             return Err(Error::parameter(name, time, "finite"));

@@ -427,7 +427,7 @@ pub struct OrbitOptions {
     /// A second method that computes the orbit again, or none [default: cvode-adams; rodas5p in a build without SUNDIALS]
     #[arg(long, value_name = "METHOD", help_heading = "Orbit")]
     pub crosscheck: Option<String>,
-    /// The method of the flow and its derivatives: auto (taylor), taylor, cvode-bdf, cvode-adams, rodas5p, rodas4 or rosenbrock23
+    /// The method of the flow and its derivatives: auto (taylor), taylor, cvode-bdf, cvode-adams, rodas5p, rodas4, rosenbrock23 or radau
     #[arg(
         long,
         value_name = "NAME",
@@ -437,7 +437,7 @@ pub struct OrbitOptions {
         help_heading = "Numerics"
     )]
     pub method: String,
-    /// Relative local error tolerance [default: 1e-15 of taylor, 1e-11 of the others]
+    /// Relative local error tolerance [default: 1e-15 of taylor, 1e-13 of radau, 1e-11 of the others]
     #[arg(long, value_name = "X", value_parser = number, allow_negative_numbers = true, help_heading = "Numerics")]
     pub rtol: Option<f64>,
     /// Absolute local error tolerance of tau and ln psi [default: as --rtol]

@@ -310,8 +310,7 @@ fn method(numerics: &NumericsOptions) -> Result<ManyMethod> {
         }
         #[cfg(feature = "sundials")]
         Choice::Cvode(MultistepMethod::Bdf) => ManyMethod::Cvode(ManyCvode::new(rtol, max_steps)?),
-        #[cfg(feature = "sundials")]
-        Choice::Cvode(MultistepMethod::Adams) => {
+        _ => {
             return Err(Error::Input(format!(
                 "`method` {}: many interfaces are integrated by taylor, a Rosenbrock method or cvode-bdf",
                 numerics.method
