@@ -28,7 +28,8 @@ fn branches(name: &str, known: &Value) -> Vec<Vec<Point>> {
         known["from"], known["to"]
     );
     let ended = command::twinslip(&text);
-    assert_eq!(ended.code, 0, "{name}: {}", ended.err);
+    // A row may fall so near a branch point that its stability is undecided.
+    assert!(matches!(ended.code, 0 | 3), "{name}: {}", ended.err);
     let made: Value = serde_json::from_str(&ended.out).expect("JSON");
     let mut found: Vec<(Value, Vec<Point>)> = Vec::new();
     for one in made["result"]["special"].as_array().expect("a list") {

@@ -7,10 +7,11 @@ use super::family::OverLoadings;
 use super::find::SEARCH;
 use super::hopf::{HopfPoint, hopf_points};
 use super::interface_system::InterfaceSystem;
-use super::orbit_curve::{Palc, PalcSettings};
+use super::orbit_curve::{Palc, PalcSettings, WatchedFunction};
 use super::shooting::close;
 use super::shooting_nodes::ShootingNodes;
 use super::space::{Space, space_of};
+use crate::continuation::Met;
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::model::{DRIVING, Parameter};
@@ -98,16 +99,16 @@ fn follow(
     ) else {
         return Ok(());
     };
-    palc.follow(&[], STEPS, &mut |palc, before, _| {
-        let (old, new) = (&before.here.site, &palc.now.here.site);
-        if (new.at[DRIVING] - wanted) * (old.at[DRIVING] - wanted) <= 0.0 {
-            // The nearer of both is the guess.
-            let nearer = (old.at[DRIVING] - wanted).abs() < (new.at[DRIVING] - wanted).abs();
-            let guess = if nearer { old } else { new };
-            if let Ok(closed) = close(tracer, space.field(), guess.shooting.clone()) {
+    let passing = [WatchedFunction::Value(DRIVING, wanted)];
+    palc.follow(&passing, STEPS, &mut |palc, before, met| {
+        if let Met::Zero(_, at) = met {
+            let guess = at.here.site.shooting.clone();
+            if let Ok(closed) = close(tracer, space.field(), guess) {
                 found.push(closed.shooting);
             }
+            return Continue(());
         }
+        let (old, new) = (&before.here.site, &palc.now.here.site);
         let far = (new.at[DRIVING] - begin).abs() > reach;
         if far || palc.ends_at(old, hopfs).is_some() {
             Break(())

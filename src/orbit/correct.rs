@@ -12,9 +12,11 @@ use super::linear::Linear;
 use super::multipliers::eigenvalues_of;
 use super::periodic_schur::LogEigenvalue;
 use super::shooting_nodes::ShootingNodes;
+use super::stiffness::method_for;
 use super::test_function::{Spectrum, TestFunction};
 use crate::error::{Error, Result};
 use crate::field::Matrix;
+use crate::integrate::MAX_STEPS;
 use nalgebra::{Matrix2, Vector2};
 use std::sync::Arc as Shared;
 
@@ -124,24 +126,44 @@ pub struct Corrector<'a> {
     pub family: &'a dyn ParametrisedField,
     /// What makes its arcs.
     pub tracer: Tracer,
+    /// The tolerance and the bounds on the steps of an arc and of all, where the method is the one for each orbit.
+    for_each: Option<(f64, (usize, usize))>,
 }
 
 impl<'a> Corrector<'a> {
-    /// With a Taylor method of this tolerance.
+    /// With a Taylor method of this tolerance, or an implicit one for stiff orbits.
     ///
     /// # Errors
     /// [`crate::Error::Parameter`] for a tolerance outside its domain.
     pub fn new(family: &'a dyn ParametrisedField, tolerance: f64) -> crate::Result<Self> {
+        let alone = (MAX_STEPS, usize::MAX);
+        Self::within(family, tolerance, alone)
+    }
+
+    /// The same for no more than so many steps in an arc, and about so many in all.
+    ///
+    /// # Errors
+    /// As of [`Self::new`].
+    pub fn within(
+        family: &'a dyn ParametrisedField,
+        tolerance: f64,
+        steps: (usize, usize),
+    ) -> crate::Result<Self> {
         Ok(Corrector {
             family,
-            tracer: Tracer::taylor(tolerance)?,
+            tracer: Tracer::limited(tolerance, steps.0, steps.1)?,
+            for_each: family.may_be_stiff().then_some((tolerance, steps)),
         })
     }
 
     /// With any method. Where it makes no derivatives in the parameters they are differences of its flows, which Newton's method
     /// needs but to converge.
     pub fn by(family: &'a dyn ParametrisedField, tracer: Tracer) -> Self {
-        Corrector { family, tracer }
+        Corrector {
+            family,
+            tracer,
+            for_each: None,
+        }
     }
 
     /// The linearisation at a site, with the derivatives in the parameters.
@@ -223,6 +245,19 @@ impl<'a> Corrector<'a> {
         self.correct_in(Some(&orbit.linear), guess, free, conditions, goal)
     }
 
+    /// Takes the method for the orbits near a guess.
+    fn suit(&mut self, guess: &ContinuationPoint) -> Result<()> {
+        let Some((tolerance, steps)) = self.for_each else {
+            return Ok(());
+        };
+        let field = self.family.field(guess.at);
+        let method = method_for(&field, &guess.shooting);
+        if method.name() != self.tracer.name() {
+            self.tracer = Tracer::for_orbit(method, tolerance, steps)?;
+        }
+        Ok(())
+    }
+
     fn correct_in(
         &mut self,
         planes: Option<&Linear>,
@@ -233,6 +268,7 @@ impl<'a> Corrector<'a> {
     ) -> Result<Regular> {
         checked(conditions, self.family.dimension())?;
         guess.shooting.checked(self.family.dimension())?;
+        self.suit(&guess)?;
         let mut reached = (0, f64::INFINITY);
         let found = self.newton((planes, guess), free, conditions, goal, &mut reached);
         found.ok_or(Error::NotConverged {

@@ -4,9 +4,10 @@ use super::arc::Tracer;
 use super::settle::axis;
 use super::shooting_nodes::ShootingNodes;
 use super::solve::OrbitAccuracy;
+use super::stiffness::method_for;
 use crate::error::Result;
 use crate::field::Vector;
-use crate::integrate::{AnyField, AnyStep, Choice, Control, Tolerances};
+use crate::integrate::{AnyField, AnyStep, Choice, Control, MAX_STEPS, Tolerances};
 use crate::number::bracketed_root;
 use crate::number::polynomial::{Crossing, evaluate, roots};
 use crate::series::{REFERENCE_ORDER, Section, Zeros};
@@ -30,7 +31,9 @@ pub fn ranges(field: &AnyField<'_>, shooting: &ShootingNodes) -> Result<Vec<(f64
     /// Tolerance of the run.
     const ROUGH: f64 = 1e-8;
     shooting.checked(field.dimension())?;
-    Ok(extremes_by(Tracer::taylor(ROUGH)?, field, shooting, None)?.ranges)
+    let method = method_for(field, shooting);
+    let tracer = Tracer::for_orbit(method, ROUGH, (MAX_STEPS, usize::MAX))?;
+    Ok(extremes_by(tracer, field, shooting, None)?.ranges)
 }
 
 /// Along the shooting's arcs, each from its own node.

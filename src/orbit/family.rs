@@ -46,6 +46,11 @@ pub trait ParametrisedField: Sync {
         projection(flow)
     }
 
+    /// Whether strong damping may be part of an orbit, which then takes an implicit method.
+    fn may_be_stiff(&self) -> bool {
+        false
+    }
+
     /// The units of the variables, where lengths are told in others.
     fn units(&self) -> Option<&[f64]> {
         None

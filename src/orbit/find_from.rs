@@ -33,7 +33,15 @@ pub fn find_from(
     match found {
         // Where the explicit method gets nowhere the orbit may be that of a stiff system.
         Err(error) if accuracy.method == Choice::Auto => {
-            find_by(field, start, period, &accuracy.stiff()).map_err(|_| error)
+            let stiff = OrbitAccuracy {
+                all_steps: accuracy.all_steps.min(SEARCH / OVER_TAYLOR),
+                ..accuracy.stiff()
+            };
+            match find_by(field, start, period, &stiff) {
+                // What is known of the period to no digit is no answer.
+                Ok(found) if found.orbit.period.uncertainty < found.orbit.period.value => Ok(found),
+                _ => Err(error),
+            }
         }
         found => found,
     }
@@ -45,7 +53,8 @@ fn find_by(
     period: Option<f64>,
     accuracy: &OrbitAccuracy,
 ) -> Result<FoundOrbit> {
-    let mut tracer = Tracer::limited_by(accuracy.method, ROUGH, accuracy.max_steps, SEARCH)?;
+    let search = SEARCH.min(accuracy.all_steps);
+    let mut tracer = Tracer::limited_by(accuracy.method, ROUGH, accuracy.max_steps, search)?;
     let space = Alone {
         field,
         symmetry: Symmetry::Symmetric,
@@ -84,6 +93,8 @@ fn find_by(
     })
 }
 
+/// What an implicit step takes, in steps of Taylor's method.
+const OVER_TAYLOR: usize = 50;
 /// Periods that differ by less, relatively, are of neighbours in a family.
 const BESIDE: f64 = 1e-6;
 

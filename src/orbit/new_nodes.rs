@@ -16,6 +16,8 @@ const GROWN: f64 = 7.0;
 const AGREED: f64 = 0.25;
 /// A product of two slopes of the parameters that is no rounding.
 const SLOPES: f64 = 1e-12;
+/// Nodes whose displacement is less than this part of that of the parameters, both squared, stay where they are but for rounding.
+const STILL: f64 = 1e-6;
 /// How often arcs are split for it.
 const SPLITS: usize = 6;
 
@@ -80,7 +82,9 @@ impl OrbitCurve<'_, '_> {
             let (of_flow, new_moved) = (moved.dot(&new.nodes[node]), &new.nodes[node]);
             let off = (&moved - new_moved * of_flow.signum()).norm();
             let of_parameters = product(&parameters, &new.parameters);
-            if off < AGREED * moved.norm().max(new_moved.norm()) || of_parameters.abs() < SLOPES {
+            let agreed = off < AGREED * moved.norm().max(new_moved.norm());
+            let moves = moved.norm_squared() > STILL * of_parameters.abs();
+            if (agreed && moves) || of_parameters.abs() < SLOPES {
                 of_flow
             } else {
                 of_parameters

@@ -214,7 +214,12 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
 
     fn correct(&mut self, from: &DirectedPoint, distance: f64) -> Result<(DirectedPoint, f64)> {
         let DirectedPoint { here, direction } = from;
-        let mut predicted = here.site.moved(direction, distance);
+        let field = self.corrector.family.field(here.site.at);
+        let nodes = here.site.shooting.nodes.iter();
+        let flows: Vec<_> = nodes.map(|x| field.f(x)).collect();
+        drop(field);
+        let predicted = here.site.moved(direction, distance);
+        let mut predicted = predicted.moved_along(&here.site, &flows);
         let durations = here.site.shooting.durations.iter();
         for (now, then) in durations.zip(&mut predicted.shooting.durations) {
             *then = now * (*then / now).clamp(1.0 / STRETCH, STRETCH);

@@ -9,7 +9,7 @@ use super::shooting_nodes::{MOST_ARCS, MOST_IMPLICIT_ARCS, ShootingNodes};
 use super::space::{Space, Tracers};
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::Result;
-use crate::integrate::{AnyField, Choice, MAX_STEPS, RosenbrockMethod, Tolerances, Work};
+use crate::integrate::{AnyField, Choice, MAX_STEPS, Tolerances, Work};
 use crate::number::Uncertain;
 
 /// A periodic orbit.
@@ -105,6 +105,7 @@ impl OrbitAccuracy {
     pub fn of(method: Choice) -> Self {
         let tolerance = match method {
             Choice::Auto | Choice::Taylor => 1e-15,
+            Choice::Radau => 1e-13,
             _ => 1e-11,
         };
         OrbitAccuracy {
@@ -130,7 +131,7 @@ impl OrbitAccuracy {
 
     /// The same by the implicit method, for the orbit of a stiff system.
     pub fn stiff(self) -> Self {
-        let implicit = Self::of(Choice::Rosenbrock(RosenbrockMethod::Rodas5P));
+        let implicit = Self::of(Choice::Radau);
         OrbitAccuracy {
             method: implicit.method,
             tolerances: implicit.tolerances.stepping(self.tolerances.max_step),
@@ -190,7 +191,7 @@ pub(super) fn solve(
         ));
     }
     let sizes = first.shooting.sizes();
-    let most = if tracers.here.differentiates() {
+    let most = if tracers.here.name() == Choice::Taylor.name() {
         MOST_ARCS
     } else {
         MOST_IMPLICIT_ARCS

@@ -30,6 +30,8 @@ pub(super) struct OrbitBranch<'s, 'b, 'a> {
     inside: bool,
     /// The orbit that it begins with, which it does not come to again.
     pub begin: Option<ContinuationPoint>,
+    /// The place of the Hopf point at which it begins.
+    pub from_hopf: Option<usize>,
     periods: Periods,
     outside: Outside,
     /// While the parameter does not vary.
@@ -49,6 +51,7 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
             times,
             inside,
             begin: None,
+            from_hopf: None,
             periods: Periods::default(),
             outside: Outside::default(),
             vertical: Some(Vertical::default()),
@@ -169,6 +172,14 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         let here = &now.here;
         let last = &before.here.site;
         if let Some(i) = palc.ends_at_coordinate(last, &self.set.coordinates) {
+            if self.from_hopf == Some(i) {
+                // One branch begins at a Hopf point: along a canard a step has turned round.
+                let why =
+                    "it comes back to the Hopf point that it begins at, the way that it has gone";
+                let point = self.end(here, why);
+                let _ = self.tell(GeneralEvent::Special(point), teller);
+                return Break(());
+            }
             self.set.reached[i] = true;
             let point = GeneralPoint {
                 number: self.number,

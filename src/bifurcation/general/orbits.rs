@@ -14,7 +14,7 @@ use crate::bifurcation::orbits::{ARC, LONGEST, ROUGH, WORK};
 use crate::error::Result;
 use crate::orbit::{
     Condition, ContinuationPoint, Corrector, Goal, Palc, PalcSettings, ParametrisedField, Regular,
-    SmallOrbits, Switch, Tracer,
+    SmallOrbits, Switch,
 };
 use std::ops::ControlFlow::Continue;
 
@@ -38,7 +38,7 @@ pub fn orbits(branch: &GeneralBranch<'_>, seen: GeneralObserver<'_>) -> Result<(
 
 /// What makes the orbits of a family, its work bounded.
 pub(super) fn new_corrector(family: &dyn ParametrisedField) -> Result<Corrector<'_>> {
-    Ok(Corrector::by(family, Tracer::limited(ROUGH, ARC, WORK)?))
+    Corrector::within(family, ROUGH, (ARC, WORK))
 }
 
 /// The Hopf points on all equilibria, by their coordinate, each once; as they are told of.
@@ -261,7 +261,11 @@ impl<'b, 'a> OrbitBranches<'b, 'a> {
         }
         let mut corrector = new_corrector(self.branch.system.family)?;
         match Palc::from_hopf(&mut corrector, self.settings(), &hopf) {
-            Ok(mut palc) => OrbitBranch::new(self, number, 0, inside).go(&mut palc, teller),
+            Ok(mut palc) => {
+                let mut branch = OrbitBranch::new(self, number, 0, inside);
+                branch.from_hopf = Some(i);
+                branch.go(&mut palc, teller)
+            }
             Err(_) if !inside => Ok(()),
             Err(error) => {
                 let special = GeneralPoint {

@@ -1,0 +1,60 @@
+//! Which method traces an orbit: Taylor's, or where strong damping would hold its steps short an implicit one.
+
+use super::arc::Tracer;
+use super::shooting_nodes::ShootingNodes;
+use crate::error::Result;
+use crate::field::Vector;
+use crate::integrate::{AnyField, Choice};
+use crate::number::eigenvalues;
+
+/// By how many factors e the fastest decay goes on, all along an orbit, from which on the implicit method takes less time. Taylor's method steps
+/// past a few of them at once, in some hundredth of the time of an implicit step, of which an orbit needs some hundreds.
+const STIFF: f64 = 2e5;
+/// The implicit method errs by less than its tolerance, and from this one on by rounding.
+const LEAST: f64 = 1e-13;
+
+/// The method for this orbit.
+pub fn method_for(field: &AnyField<'_>, orbit: &ShootingNodes) -> Choice {
+    let nodes = || orbit.nodes.iter().zip(&orbit.durations);
+    // No eigenvalue is larger than the largest sum of a row.
+    let at_most = |(x, duration): (_, &f64)| {
+        let rows = field.jacobian(x);
+        let sums = rows.row_iter().map(|row| row.abs().sum());
+        duration.abs() * sums.fold(0.0, f64::max)
+    };
+    if nodes().map(at_most).sum::<f64>() < STIFF {
+        return Choice::Taylor;
+    }
+    let decay = |x: &Vector| {
+        let rates = eigenvalues(&field.jacobian(x)).into_iter().flatten();
+        let sign = orbit.period().signum();
+        rates.fold(0.0, |most, rate| f64::max(most, -sign * rate.re))
+    };
+    let decays: Vec<f64> = orbit.nodes.iter().map(decay).collect();
+    // Of both ends of an arc the mean on a logarithmic scale: what decays fast at a peak does not do so all along the arc.
+    let next = decays.iter().cycle().skip(1);
+    let arcs = decays.iter().zip(next).zip(&orbit.durations);
+    let all: f64 = arcs.map(|((a, b), t)| (a * b).sqrt() * t.abs()).sum();
+    match all < STIFF {
+        true => Choice::Taylor,
+        false => Choice::Radau,
+    }
+}
+
+impl Tracer {
+    /// By the method for an orbit, with this tolerance, for no more than so many steps in an arc and about so many in all.
+    ///
+    /// # Errors
+    /// [`crate::Error::Parameter`] for a tolerance outside its domain.
+    pub(super) fn for_orbit(
+        method: Choice,
+        tolerance: f64,
+        (arc, all): (usize, usize),
+    ) -> Result<Self> {
+        let tolerance = match method {
+            Choice::Radau => tolerance.max(LEAST),
+            _ => tolerance,
+        };
+        Self::limited_by(method, tolerance, arc, all)
+    }
+}
