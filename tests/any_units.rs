@@ -545,7 +545,7 @@ fn no_branch_ends_at_the_hopf_point_that_it_begins_at() {
         let at: Vec<f64> = hopfs.map(|one| number(one, "/f/value")).collect();
         assert!(at.len() < 2 || at[0] != at[1], "{branch}: {at:?}");
     }
-    // One goes all the way, past the fold at which the canards explode.
+    // It goes all the way, past the fold at which the canards explode.
     let whole = (0..2).any(|branch| {
         let labels: Vec<&str> = of(branch).filter_map(|one| one["label"].as_str()).collect();
         labels == ["HB", "SN", "HB"]

@@ -68,9 +68,10 @@ impl OrbitCurve<'_, '_> {
             linear = self.corrector.linear(&site)?;
         }
         drop(field);
-        let (node, moved) = self.carried(old, direction, (&site.shooting, begin), &linear)?;
         let scale = self.corrector.family.scale(site.at);
         let (_, along) = linear.solutions(&self.settings.free, scale)?;
+        let there = (&site.shooting, &along[..], begin);
+        let (node, moved) = self.carried(old, direction, there, &linear)?;
         let first = most_moved(&along);
         let count = site.shooting.nodes.len();
         site.shooting = site.shooting.beginning_at(first);
@@ -92,33 +93,50 @@ impl OrbitCurve<'_, '_> {
         })
     }
 
-    /// What a direction displaces the next one of new nodes by after the node that it displaces most, across the flow; and which that is.
-    /// The first of the new nodes is so long after the first of the old ones.
+    /// What a direction displaces a new node by, across the flow, and which that is: the one next after an old node where both are displaced
+    /// most. What contracts by more than all digits between them would say nothing. The first of the new nodes is so long after the first of the
+    /// old ones.
     fn carried(
         &mut self,
         old: &ContinuationPoint,
         direction: &TangentVector,
-        (new, begin): (&ShootingNodes, f64),
+        (new, along, begin): (&ShootingNodes, &[TangentVector], f64),
         linear: &Linear,
     ) -> Option<(usize, Vector)> {
-        let most = most_moved(std::slice::from_ref(direction));
-        let (period, durations) = (new.period(), &old.shooting.durations);
-        let time = durations[..most].iter().sum::<f64>() - begin;
-        let mut later = Vec::with_capacity(new.nodes.len());
-        let mut at = 0.0;
-        for duration in &new.durations {
-            // From the old node on, once around.
-            later.push(((at - time) / period).rem_euclid(1.0) * period);
-            at += duration;
-        }
-        let next = (0..later.len()).min_by(|&a, &b| later[a].abs().total_cmp(&later[b].abs()))?;
+        let period = new.period();
+        let begins = |durations: &[f64], first: f64| -> Vec<f64> {
+            let sums = durations.iter().scan(first, |at, duration| {
+                *at += duration;
+                Some(*at)
+            });
+            std::iter::once(first)
+                .chain(sums)
+                .take(durations.len())
+                .collect()
+        };
+        let (olds, news) = (
+            begins(&old.shooting.durations, 0.0),
+            begins(&new.durations, begin),
+        );
+        // The new node after each old one, once around, and how much later.
+        let after = olds.iter().map(|time| {
+            let later = |at: &f64| ((at - time) / period).rem_euclid(1.0) * period;
+            let nodes = news.iter().map(later).enumerate();
+            nodes.min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
+        });
+        let after = after.collect::<Option<Vec<_>>>()?;
+        let seen = |&(k, (next, _)): &(usize, (usize, f64))| {
+            direction.nodes[k].norm() * displacement(along, next).sqrt()
+        };
+        let pairs = after.into_iter().enumerate();
+        let (most, (next, later)) = pairs.max_by(|a, b| seen(a).total_cmp(&seen(b)))?;
         let family = self.corrector.family;
         let field = family.field(old.at);
         let mut moved = direction.nodes[most].clone();
-        if later[next] != 0.0 {
+        if later != 0.0 {
             let free = family.plane();
             let mut arcs = self.corrector.tracer.arcs(&field, &free).ok()?;
-            let arc = arcs.arc(&old.shooting.nodes[most], later[next]).ok()?;
+            let arc = arcs.arc(&old.shooting.nodes[most], later).ok()?;
             moved = &arc.tangent * moved;
             let scale = family.scale(old.at);
             if arc.parameters.ncols() == scale.len() {
@@ -130,8 +148,8 @@ impl OrbitCurve<'_, '_> {
         let node = &new.nodes[next];
         let flow = field.f(node);
         let normal = linear.normal(next);
-        let along = normal.dot(&moved) / normal.dot(&flow);
-        moved.axpy(-along, &flow, 1.0);
+        let of_flow = normal.dot(&moved) / normal.dot(&flow);
+        moved.axpy(-of_flow, &flow, 1.0);
         Some((next, moved))
     }
 
@@ -158,14 +176,19 @@ impl OrbitCurve<'_, '_> {
 /// The node that the tangent vectors left to the orbit move most. All others are found from the first one: from the small end of a
 /// tangent vector that grows by many decades nothing is found.
 fn most_moved(along: &[TangentVector]) -> usize {
-    let moved = |k: usize| -> f64 {
-        let each = along.iter().map(|tangent| tangent.nodes[k].norm_squared());
-        each.sum()
-    };
     let count = along.first().map_or(0, |tangent| tangent.nodes.len());
+    let moved = |k: &usize| displacement(along, *k);
     (0..count)
-        .max_by(|&a, &b| moved(a).total_cmp(&moved(b)))
+        .max_by(|a, b| moved(a).total_cmp(&moved(b)))
         .unwrap_or(0)
+}
+
+/// The square of what these tangent vectors displace a node by.
+fn displacement(along: &[TangentVector], node: usize) -> f64 {
+    let each = along
+        .iter()
+        .map(|tangent| tangent.nodes[node].norm_squared());
+    each.sum()
 }
 
 pub(super) fn no_nodes() -> Stop {
