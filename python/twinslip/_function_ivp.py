@@ -30,7 +30,7 @@ METHODS = {
     "LSODA": "auto",
 }
 #: Those that look at the Jacobian, and what they are where the problem is stiff from its start.
-IMPLICIT = {"Radau": "radau", "BDF": "rodas5p"}
+IMPLICIT = {"Radau": "rodas5p", "BDF": "rodas5p"}
 #: A problem is stiff from its start where what decays fastest does so as many times within the span.
 _STIFF = 1e4
 #: As far as a span without an end goes.

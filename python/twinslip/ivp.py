@@ -72,8 +72,8 @@ def solve_ivp(
         ``"auto"``, ``"taylor"``, ``"rodas5p"``, ``"rodas4"``, ``"rosenbrock23"``, ``"radau"``,
         ``"cvode-bdf"`` or ``"cvode-adams"``. Of a function also SciPy's: ``"RK23"``, ``"RK45"`` and
         ``"DOP853"`` are ``"taylor"``, ``"Radau"``, ``"BDF"`` and ``"LSODA"`` are ``"auto"``; the first
-        two look at the Jacobian first, and are ``"radau"`` and ``"rodas5p"`` where the problem is
-        stiff from its start. The message says so, but where an event ends the run, as scripts compare that one.
+        two look at the Jacobian first, and are ``"rodas5p"`` where the problem is stiff from its
+        start. The message says so, but where an event ends the run, as scripts compare that one.
     t_eval : array_like, optional
         Times at which the solution is kept, within the span and in its order; else the ends of
         all steps.
