@@ -1,13 +1,14 @@
-//! Predicted nodes moved along the flow, which changes no orbit: so that durations change by about the same parts.
+//! Predicted nodes are moved along the flow, so that the relative changes of the arcs' durations are small. Moving a node along the flow changes no
+//! orbit.
 //!
-//! A node on a slow motion stands in a plane that is fixed in space, and where the slow motion ends soon after it, as at a fold, it may end
-//! much sooner or later, in parts of that arc's duration, on the next orbit. The node had better stay as far from the end as it was.
+//! Without this a node keeps its plane in space while the orbit changes. Where a slow motion ends soon after the node, as at a fold of a slow manifold,
+//! the duration of the arc from the node to the end then changes by a large factor in a small step.
 
 use super::continuation_point::ContinuationPoint;
 use super::spread::extents;
 use crate::field::{Matrix, Vector};
 
-/// What a node moved by all of the extents counts beside an arc that lasts twice as long, or no time.
+/// Weight of a node's motion, as a part of the orbit's extents, beside the relative change of a duration.
 const FAR: f64 = 10.0;
 
 impl ContinuationPoint {

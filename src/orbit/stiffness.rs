@@ -1,4 +1,4 @@
-//! Which method traces an orbit: Taylor's, or where strong damping would hold its steps short an implicit one.
+//! Which method integrates along an orbit: Taylor's, or an implicit one where strong damping would hold its steps short.
 
 use super::arc::Tracer;
 use super::shooting_nodes::ShootingNodes;
@@ -7,10 +7,10 @@ use crate::field::Vector;
 use crate::integrate::{AnyField, Choice};
 use crate::number::eigenvalues;
 
-/// By how many factors e the fastest decay goes on, all along an orbit, from which on the implicit method takes less time. Taylor's method steps
-/// past a few of them at once, in some hundredth of the time of an implicit step, of which an orbit needs some hundreds.
+/// The fastest decay rate, integrated over a period, above which the implicit method takes less time. Stability bounds the product of this rate and
+/// a Taylor step by a few units; a Taylor step takes a hundredth of the time of an implicit one, of which an orbit needs some hundreds.
 const STIFF: f64 = 2e5;
-/// The implicit method errs by less than its tolerance, and from this one on by rounding.
+/// The least tolerance of the implicit method: below it rounding is the larger error.
 const LEAST: f64 = 1e-13;
 
 /// The method for this orbit.

@@ -1,8 +1,8 @@
 //! Radau IIA methods of order 9 and 13: for stiff systems at tight tolerances, and for their periodic orbits.
 //!
 //! Where a Rosenbrock method of order 5 takes thousands of steps for eleven digits these take a few hundred, and the derivatives in the
-//! start and in parameters are those of the steps themselves (Hairer & Wanner 1999, J. Comput. Appl. Math. 111, 93-111). What is not known
-//! to the compiler is the dimension: the code is one for all fields.
+//! start and in parameters are those of the steps themselves (Hairer & Wanner 1999, J. Comput. Appl. Math. 111, 93-111). The code is compiled
+//! once: the dimension is known when the program runs.
 
 mod coefficients;
 mod stages;
