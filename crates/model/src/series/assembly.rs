@@ -1,4 +1,4 @@
-//! From a recorded formula to the operations of its [`Program`].
+//! From a recorded formula to the operations of its [`Program`] at values of its parameters.
 
 use super::program::{Instruction, Operation, Program, Source};
 use super::trace::{Graph, Node, NodeIndex, Traced};
@@ -7,27 +7,43 @@ use crate::number::{DoubleDouble, Real};
 /// Rows before that of a balance.
 const BALANCE_ROWS: usize = 6;
 
-impl Program {
-    /// The operations that these outputs of a formula need, in so many variables; what stands after these has those values.
-    pub fn new(
-        graph: &Graph,
-        (variables, parameters): (usize, &[f64]),
-        outputs: &[Traced<'_>],
-    ) -> Self {
+/// A formula with parameters as it was recorded.
+pub(super) struct RecordedFormula {
+    nodes: Vec<Node>,
+    /// Whether it needs each of them.
+    needed: Vec<bool>,
+    outputs: Vec<NodeIndex>,
+    variables: usize,
+    branches: bool,
+}
+
+impl RecordedFormula {
+    /// These outputs in so many variables; the variables that stand after these are the parameters.
+    pub fn new(graph: &Graph, variables: usize, outputs: &[Traced<'_>]) -> Self {
         let outputs: Vec<NodeIndex> = outputs.iter().map(|&x| graph.place_of(x)).collect();
         let nodes = graph.nodes();
-        let mut program = Program::empty(variables);
-        program.branches = graph.branches();
+        RecordedFormula {
+            needed: needed(&nodes, &outputs),
+            nodes,
+            outputs,
+            variables,
+            branches: graph.branches(),
+        }
+    }
+
+    /// The operations that the outputs need at these values of the parameters.
+    pub fn program(&self, parameters: &[f64]) -> Program {
+        let mut program = Program::empty(self.variables);
+        program.branches = self.branches;
         let mut assembly = Assembly {
             program,
-            sources: Vec::with_capacity(nodes.len()),
-            nodes: &nodes,
+            sources: Vec::with_capacity(self.nodes.len()),
+            nodes: &self.nodes,
             parameters,
         };
-        let needed = needed(&nodes, &outputs);
-        for (place, node) in nodes.iter().enumerate() {
+        for (node, needed) in self.nodes.iter().zip(&self.needed) {
             // A constant, for what nobody asks for.
-            let source = if needed[place] {
+            let source = if *needed {
                 assembly.source(*node)
             } else {
                 Source::Number(DoubleDouble::ZERO)
@@ -35,7 +51,8 @@ impl Program {
             assembly.sources.push(source);
         }
         let mut program = assembly.program;
-        program.outputs = outputs.iter().map(|&at| assembly.sources[at]).collect();
+        let outputs = self.outputs.iter();
+        program.outputs = outputs.map(|&at| assembly.sources[at]).collect();
         program.lanes = vec![0; program.outputs.len()];
         program.order();
         program

@@ -22,6 +22,9 @@ use pulp::NullaryFnOnce;
 /// Records the formula at a state.
 pub(super) type RecordFormula<'a> = Box<dyn Fn(&[f64]) -> Program + 'a>;
 
+/// A program, and what records it anew: needed where it holds only where it was recorded.
+pub(super) type Anew<'a> = (Program, Option<RecordFormula<'a>>);
+
 /// A solution on its way, in a number of dimensions known when the program runs.
 pub(super) trait Trajectory {
     /// As [`super::Solution::order`].
@@ -65,7 +68,7 @@ pub(super) trait Trajectory {
 ///
 /// In two lanes ([`Program::in_two_lanes`]) two variables share a row, and x is as many numbers less.
 pub struct Interpreted<'a, T: Element> {
-    record: RecordFormula<'a>,
+    record: Option<RecordFormula<'a>>,
     program: Program,
     rows: ProgramRows<T>,
     /// The rows' formula as machine code; none where it is recorded anew at every step.
@@ -107,25 +110,8 @@ struct Reached<T> {
 }
 
 impl<'a, T: Element> Interpreted<'a, T> {
-    /// To be started, in so many variables, with room for so many coefficients; `any` is any number.
-    pub(super) fn new(
-        record: RecordFormula<'a>,
-        (variables, watched): (usize, usize),
-        room: usize,
-        any: T,
-    ) -> Self {
-        let program = record(&vec![1.0; variables]);
-        Self::of_program(record, program, watched, room, any)
-    }
-
-    /// The same of a program that is recorded already.
-    pub(super) fn of_program(
-        record: RecordFormula<'a>,
-        program: Program,
-        watched: usize,
-        room: usize,
-        any: T,
-    ) -> Self {
+    /// To be started, with room for so many coefficients; `any` is any number.
+    pub(super) fn new((program, record): Anew<'a>, watched: usize, room: usize, any: T) -> Self {
         let zeros = vec![any.like(0.0); program.variables()];
         let mut relative = vec![false; program.variables()];
         for (&(row, _), &factor) in program.places.iter().zip(&program.own_factors) {
@@ -182,6 +168,8 @@ impl<'a, T: Element> Interpreted<'a, T> {
         self.reached.x.copy_from_slice(x);
         self.reached.lost.fill(self.any.like(0.0));
         self.largest_so_far.fill(self.any.like(0.0));
+        self.noise.fill(self.any.like(0.0));
+        self.crossing = 0.0;
         self.probed = false;
         self.rejected = 0;
         self.record_here();
@@ -205,9 +193,11 @@ impl<'a, T: Element> Interpreted<'a, T> {
     /// The formula as it is here, if it is not the same everywhere, and the first coefficients.
     #[inline(always)]
     fn record_here(&mut self) {
-        if self.program.branches {
+        if self.program.branches
+            && let Some(record) = &self.record
+        {
             let x: Vec<f64> = self.reached.x.iter().map(|x| x.first()).collect();
-            self.program = (self.record)(&x);
+            self.program = record(&x);
             self.rows = ProgramRows::new(&self.program, self.room, self.any);
             self.probe = ProgramRows::new(&self.program, 1, self.any);
             self.probed = false;

@@ -1,15 +1,15 @@
 //! Solutions that are computed by a recorded formula: references, tangents and Taylor maps of any [`Equations`], and all solutions
 //! of [`Expressions`].
 
+use super::assembly::RecordedFormula;
 use super::compiled::{self, BothWays};
 use super::cubic::Jet3;
 #[cfg(target_arch = "x86_64")]
 use super::element::Element;
 use super::equations::Equations;
-use super::interpreted::{Interpreted, RecordFormula, Trajectory, Transported};
+use super::interpreted::{Anew, Interpreted, RecordFormula, Trajectory, Transported};
 use super::linearised::Linearised;
-use super::program::Program;
-use super::recent::Formulas;
+use super::recent::{Formulas, Reused};
 use super::trace::{Graph, Traced};
 use super::{
     Accuracy, Derivatives, Expansion, MAX_ORDER, REFERENCE_ORDER, Solution, Tangent, TaylorMap,
@@ -45,56 +45,88 @@ pub struct Recording<'a> {
     /// In how many parameters it has derivatives.
     free: usize,
     symmetric: bool,
+    /// Where solutions that are done with are kept, if anywhere.
+    formulas: Option<Formulas<'a>>,
 }
+
+/// Slip rates that are kept, parameters in which there are derivatives, and whether the solution is a symmetric one.
+type Kind = (usize, usize, bool);
 
 /// What a solution is made in. None of these is generic: they are compiled with this crate, not with each system.
 impl<'a> Recording<'a> {
-    fn shape(&self) -> (usize, usize) {
-        (self.variables, self.slip_rates)
+    fn solution(self) -> Reused<'a> {
+        self.reused(solution_of)
     }
 
-    fn solution(self) -> Box<dyn Trajectory + 'a> {
-        let shape = self.shape();
-        #[cfg(target_arch = "x86_64")]
-        if let Some(simd) = avx2() {
-            let program = (self.record)(&vec![1.0; self.variables]);
-            if let Some(program) = program.in_two_lanes() {
-                let any = Pair::new(simd, [0.0; 2]);
-                let (record, watched) = (self.record, self.slip_rates);
-                let program = program.clone();
-                return Box::new(Interpreted::of_program(record, program, watched, ROOM, any));
-            }
+    fn tangent(self) -> Reused<'a> {
+        self.reused(tangent_of)
+    }
+
+    /// A solution of these formulas that is done with, else a new one.
+    fn reused(self, make: for<'b> fn(Anew<'b>, Kind) -> Box<dyn Trajectory + 'b>) -> Reused<'a> {
+        let idle = self.formulas.as_ref().and_then(Formulas::idle);
+        if let Some(idle) = idle {
+            return idle;
         }
-        Box::new(Interpreted::new(self.record, shape, ROOM, 0.0))
+        let kind = (self.slip_rates, self.free, self.symmetric);
+        let program = (self.record)(&vec![1.0; self.variables]);
+        if program.branches {
+            return Reused::Once(make((program, Some(self.record)), kind));
+        }
+        let made = make((program, None), kind);
+        match &self.formulas {
+            Some(formulas) => formulas.kept(made),
+            None => Reused::Once(made),
+        }
+    }
+
+    fn anew(self) -> (Anew<'a>, Kind) {
+        let kind = (self.slip_rates, self.free, self.symmetric);
+        let program = (self.record)(&vec![1.0; self.variables]);
+        ((program, Some(self.record)), kind)
     }
 
     fn reference(self) -> Box<dyn Trajectory + 'a> {
-        let (shape, zero) = (self.shape(), DoubleDouble::ZERO);
-        Box::new(Interpreted::new(self.record, shape, REFERENCE_ROOM, zero))
-    }
-
-    fn tangent(self) -> Box<dyn Trajectory + 'a> {
-        let (shape, kind) = (self.shape(), (self.free, self.symmetric));
-        let solution = Interpreted::new(self.record, shape, ROOM, 0.0);
-        #[cfg(target_arch = "x86_64")]
-        if let Some(simd) = avx2() {
-            let any = Four::new(simd, [0.0; 4]);
-            return Box::new(Linearised::new(solution, kind, ROOM, any));
-        }
-        Box::new(Linearised::new(solution, kind, ROOM, 0.0))
+        let (anew, (watched, ..)) = self.anew();
+        let zero = DoubleDouble::ZERO;
+        Box::new(Interpreted::new(anew, watched, REFERENCE_ROOM, zero))
     }
 
     fn reference_tangent(self) -> Box<dyn Trajectory + 'a> {
-        let (shape, kind) = (self.shape(), (self.free, self.symmetric));
+        let (anew, (watched, free, symmetric)) = self.anew();
         let zero = DoubleDouble::ZERO;
-        let solution = Interpreted::new(self.record, shape, REFERENCE_ROOM, zero);
+        let solution = Interpreted::new(anew, watched, REFERENCE_ROOM, zero);
+        let kind = (free, symmetric);
         Box::new(Linearised::new(solution, kind, REFERENCE_ROOM, zero))
     }
 
     fn transport(self, start: &[Jet3]) -> Transported<'a> {
-        let shape = self.shape();
-        Transported::new(self.record, shape, ROOM, start)
+        let (anew, (watched, ..)) = self.anew();
+        Transported::new(anew, watched, ROOM, start)
     }
+}
+
+fn solution_of<'b>((program, record): Anew<'b>, (watched, ..): Kind) -> Box<dyn Trajectory + 'b> {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = avx2()
+        && let Some(program) = program.in_two_lanes()
+    {
+        let any = Pair::new(simd, [0.0; 2]);
+        let program = program.clone();
+        return Box::new(Interpreted::new((program, record), watched, ROOM, any));
+    }
+    Box::new(Interpreted::new((program, record), watched, ROOM, 0.0))
+}
+
+fn tangent_of<'b>(anew: Anew<'b>, (watched, free, symmetric): Kind) -> Box<dyn Trajectory + 'b> {
+    let kind = (free, symmetric);
+    let solution = Interpreted::new(anew, watched, ROOM, 0.0);
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = avx2() {
+        let any = Four::new(simd, [0.0; 4]);
+        return Box::new(Linearised::new(solution, kind, ROOM, any));
+    }
+    Box::new(Linearised::new(solution, kind, ROOM, 0.0))
 }
 
 /// A trajectory whose number of dimensions the compiler knows.
@@ -137,7 +169,7 @@ impl<T: Deref<Target: Trajectory> + DerefMut, const N: usize> Solution<N> for Kn
     }
 }
 
-impl<const N: usize> Tangent<N> for Known<Box<dyn Trajectory + '_>, N> {
+impl<const N: usize, T: Deref<Target: Trajectory> + DerefMut> Tangent<N> for Known<T, N> {
     fn derivatives(&self) -> Derivatives<N> {
         let column = |at: usize| std::array::from_fn(|i| self.0.derivative(i, at));
         let (log_determinant, log_transverse) = self.0.log_growth();
@@ -219,13 +251,10 @@ impl<'a, S: Equations<N, P> + 'a, const N: usize, const P: usize> ByRecording<'a
                 let p = std::array::from_fn(|q| graph.variable(N + q, self.parameters[q]));
                 let rates = self.equations.rates(x, p);
                 let slip_rates = self.equations.slip_rates(x, p);
-                assemble(
-                    &graph,
-                    &self.parameters,
-                    (&rates, &slip_rates),
-                    free.as_deref(),
-                )
+                let all = (&rates[..], &slip_rates[..]);
+                formula(&graph, all, free.as_deref()).program(&self.parameters)
             }),
+            formulas: None,
         }
     }
 }
@@ -304,22 +333,22 @@ impl<'a> Recording<'a> {
         parameters: &'a [f64],
         free: Option<&[usize]>,
     ) -> Self {
-        let free = free.map(<[usize]>::to_vec);
+        let formulas = Formulas {
+            rates,
+            slip_rates,
+            variables,
+            parameters,
+            free: free.map(<[usize]>::to_vec),
+        };
         let own_factors = OnceCell::new();
         Recording {
             slip_rates: slip_rates.map_or(0, Expressions::count),
             symmetric: false,
             variables,
-            free: free.as_ref().map_or(0, Vec::len),
+            free: free.map_or(0, <[usize]>::len),
+            formulas: Some(formulas.clone()),
             record: Box::new(move |x| {
-                let formulas = Formulas {
-                    rates,
-                    slip_rates,
-                    variables,
-                    parameters,
-                    free: free.as_deref(),
-                };
-                formulas.program(|| {
+                let record = || {
                     let graph = Graph::default();
                     let place = |(i, &value): (usize, &f64)| graph.variable(i, value);
                     let x: Vec<_> = x.iter().enumerate().map(place).collect();
@@ -330,26 +359,22 @@ impl<'a> Recording<'a> {
                     let slip_rates = slip_rates.map_or_else(Vec::new, |v| v.evaluate(&x, &p));
                     let slip_rates: Vec<_> = slip_rates.into_iter().map(Some).collect();
                     let all = (&made[..], &slip_rates[..]);
-                    let mut program = assemble(&graph, parameters, all, free.as_deref());
-                    let factors = || rates.own_factors(variables, parameters);
-                    program
-                        .own_factors
-                        .clone_from(own_factors.get_or_init(factors));
-                    program
-                })
+                    formula(&graph, all, formulas.free.as_deref())
+                };
+                let factors = || rates.own_factors(variables, parameters);
+                formulas.program(record, || own_factors.get_or_init(factors).clone())
             }),
         }
     }
 }
 
-/// The program of these rates and slip rates. Its outputs: the rates, the slip rates, and with places of parameters the Jacobian
+/// The formula of these rates and slip rates. Its outputs: the rates, the slip rates, and with places of parameters the Jacobian
 /// row by row and for each rate its derivatives in these.
-fn assemble(
+fn formula(
     graph: &Graph,
-    parameters: &[f64],
     (rates, slip_rates): (&[Traced<'_>], &[Option<Traced<'_>>]),
     free: Option<&[usize]>,
-) -> Program {
+) -> RecordedFormula {
     let n = rates.len();
     let mut outputs = rates.to_vec();
     outputs.extend(slip_rates.iter().flatten());
@@ -364,5 +389,5 @@ fn assemble(
         append((0..n).collect());
         append(free.iter().map(|q| n + q).collect());
     }
-    Program::new(graph, (n, parameters), &outputs)
+    RecordedFormula::new(graph, n, &outputs)
 }

@@ -1,6 +1,6 @@
 //! Solutions to third order in variations of their start.
 
-use super::{Interpreted, RecordFormula, Trajectory};
+use super::{Anew, Interpreted, Trajectory};
 use crate::number::DoubleDouble;
 use crate::series::Accuracy;
 use crate::series::cubic::Jet3;
@@ -15,14 +15,9 @@ pub(in crate::series) struct Transported<'a> {
 
 impl<'a> Transported<'a> {
     /// To be started; the variations of the start are those of `start`.
-    pub fn new(
-        record: RecordFormula<'a>,
-        shape: (usize, usize),
-        room: usize,
-        start: &[Jet3],
-    ) -> Self {
+    pub fn new(anew: Anew<'a>, watched: usize, room: usize, start: &[Jet3]) -> Self {
         Transported {
-            solution: Interpreted::new(record, shape, room, Jet3::default()),
+            solution: Interpreted::new(anew, watched, room, Jet3::default()),
             start: start.to_vec(),
             order: 0,
         }
