@@ -125,7 +125,7 @@ impl<S: Equations<3, 2>> ParametrisedField for InThree<S> {
         self.0.scale(at)
     }
 
-    fn in_extents(&self) -> bool {
+    fn is_any_system(&self) -> bool {
         true
     }
 

@@ -61,6 +61,16 @@ pub trait SolutionCurve {
     /// The scalar product of two tangents.
     fn cosine(&self, a: &Self::Point, b: &Self::Point) -> f64;
 
+    /// Whether a change of sign between these values is no noise, and so is to be landed on.
+    fn is_clear(&self, _: (Watched<Self>, [f64; 2])) -> bool {
+        false
+    }
+
+    /// What a point may be off along the curve.
+    fn error(&self, _: &Self::Point) -> f64 {
+        0.0
+    }
+
     /// What the shortest step at a point is in units of.
     fn scale(&self, _: &Self::Point) -> f64 {
         1.0

@@ -227,16 +227,19 @@ impl<C: SolutionCurve> Continuation<C> {
     fn zeros(&mut self, step: &CurveStep<C::Point>, watches: &[Watched<C>]) -> Option<Zeros<C>> {
         let (brackets, known) = sign_changes(&mut self.curve, step, self.known.take(), watches);
         self.known = Some(known);
-        let mut zeros = Vec::new();
+        let (mut zeros, longest) = (Vec::new(), self.control.longest);
         for zero in brackets {
             let change = (zero.watch, zero.ends.each_ref().map(|end| end.value));
             match landed(&mut self.curve, step, &zero) {
                 Ok(Some((distance, at))) if self.curve.certain(change, &at, step) => {
                     zeros.push((distance, zero.watch, at));
                 }
+                Ok(None) if self.curve.is_clear(change) && step.length > FINE * longest => {
+                    return None;
+                }
                 // What can't be landed on is none: a sign that changes by noise, or through a pole.
                 Ok(_) => {}
-                Err(_) if step.length > FINE * self.control.longest => return None,
+                Err(_) if step.length > FINE * longest => return None,
                 Err(_) => {}
             }
         }

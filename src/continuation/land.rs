@@ -28,6 +28,7 @@ pub(super) fn landed<C: SolutionCurve>(
     let near = if part < 0.5 { &low } else { &high }.point.clone();
     let width = high.at - low.at;
     let margin = step.length * if width < step.length { WITHIN } else { BEYOND };
+    let margin = margin + curve.error(&low.point).max(curve.error(&high.point));
     let inside = low.at - margin..high.at + margin;
     let mut at = low.at + part * width;
     for _ in 0..ATTEMPTS {

@@ -20,6 +20,9 @@ use std::ops::ControlFlow::{Break, Continue};
 /// Below this extent the square of the amplitude is taken to change in proportion with the parameter, and no smaller orbits
 /// are asked for: their nodes' planes would miss them.
 const SMALL: f64 = 0.2;
+/// What is left of the square of the amplitude after a step towards a Hopf point, at most: nodes that have been moved along the orbit show its
+/// extent but roughly.
+const SHRINKS: f64 = 0.95;
 /// The longest step and the number of steps on a branch.
 const LONGEST: f64 = 0.5;
 const STEPS: usize = 400;
@@ -34,7 +37,7 @@ impl<'c, 'f> Palc<'c, 'f> {
         let free = *self.curve.settings.free.first()?;
         let (old, new) = (before.shooting.extent(), here.shooting.extent());
         let (old, new) = (old * old, new * new);
-        let shrinks = new < SMALL * SMALL && new < old;
+        let shrinks = new < SMALL * SMALL && new < SHRINKS * old;
         let slope = (here.at[free] - before.at[free]) / (old - new);
         shrinks.then_some(here.at[free] + slope * new)
     }

@@ -9,7 +9,7 @@ use super::orbit_curve::{DirectedPoint, OrbitCurve, PalcSettings, WatchedFunctio
 use crate::continuation::CurveStep;
 
 /// Values beyond this are no noise. Of turns nothing can be said by their values.
-const CLEAR: f64 = 1e-5;
+pub(super) const CLEAR: f64 = 1e-5;
 
 /// The distances to both sides that are tried, the nearest first, in units of the step.
 const PARTS: [f64; 3] = [0.125, 0.5, 1.0];

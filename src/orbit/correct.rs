@@ -152,7 +152,7 @@ impl<'a> Corrector<'a> {
         Ok(Corrector {
             family,
             tracer: Tracer::limited(tolerance, steps.0, steps.1)?,
-            for_each: family.may_be_stiff().then_some((tolerance, steps)),
+            for_each: family.is_any_system().then_some((tolerance, steps)),
         })
     }
 
@@ -245,8 +245,11 @@ impl<'a> Corrector<'a> {
         self.correct_in(Some(&orbit.linear), guess, free, conditions, goal)
     }
 
-    /// Takes the method for the orbits near a guess.
-    fn suit(&mut self, guess: &ContinuationPoint) -> Result<()> {
+    /// Takes the method for the orbits near a guess, as every correction does.
+    ///
+    /// # Errors
+    /// As of [`Self::within`].
+    pub fn suit(&mut self, guess: &ContinuationPoint) -> Result<()> {
         let Some((tolerance, steps)) = self.for_each else {
             return Ok(());
         };
@@ -305,14 +308,21 @@ impl<'a> Corrector<'a> {
             }
             let linear = self.linear_in(planes, &site)?;
             let (closing, along) = linear.solutions(free, self.family.scale(site.at))?;
-            let spectrum = Spectrum::new(&linear);
-            let known = match gradients.take() {
-                Some(known) => known,
-                None => self.gradients(&site, &linear, &along, &spectrum, conditions)?,
+            let tested = conditions.iter().any(|one| test_function(one).is_some());
+            let spectrum = tested.then(|| Spectrum::new(&linear));
+            let (known, by_closing) = match &spectrum {
+                None => (Vec::new(), Vec::new()),
+                Some(spectrum) => {
+                    let known = match gradients.take() {
+                        Some(known) => known,
+                        None => self.gradients(&site, &linear, &along, spectrum, conditions)?,
+                    };
+                    let closed = self.by_closing(&site, &linear, &closing, spectrum, conditions)?;
+                    (known, closed)
+                }
             };
-            let by_closing = self.by_closing(&site, &linear, &closing, &spectrum, conditions)?;
             let known_here = KnownSpectrum {
-                spectrum: &spectrum,
+                spectrum: spectrum.as_ref(),
                 gradients: &known,
                 by_closing: &by_closing,
             };
@@ -364,11 +374,10 @@ impl<'a> Corrector<'a> {
                 });
             }
             // Old gradients serve as long as the corrections shrink, and the test functions are no longer far from zero.
-            let off = conditions
-                .iter()
-                .filter_map(test_function)
-                .map(|i| i.of(&spectrum).abs());
-            let near = off.fold(0.0, f64::max) < NEAR;
+            let near = spectrum.is_some_and(|spectrum| {
+                let all = conditions.iter().filter_map(test_function);
+                all.map(|i| i.of(&spectrum).abs()).fold(0.0, f64::max) < NEAR
+            });
             gradients = (near && size < SLOW * last).then_some(known);
             last = size;
         }
@@ -546,7 +555,7 @@ fn carried(
 
 /// What is known of the test functions among the conditions.
 struct KnownSpectrum<'a> {
-    spectrum: &'a Spectrum,
+    spectrum: Option<&'a Spectrum>,
     gradients: &'a [TangentVector],
     by_closing: &'a [f64],
 }
@@ -575,7 +584,7 @@ fn weights(
                 let (gradient, by_closing) = test_functions.next()?;
                 (
                     along.iter().map(|t| gradient.dot(t)).collect(),
-                    -test_function.of(known.spectrum) - by_closing,
+                    -test_function.of(known.spectrum?) - by_closing,
                 )
             }
         };

@@ -34,9 +34,9 @@ pub trait ParametrisedField: Sync {
         flow
     }
 
-    /// Whether the planes of nodes also regard how far each variable moves along the orbit. Planes across the flow cut an orbit that is thin in one
-    /// variable at a shallow angle; where no variable is, those across the flow are the better ones.
-    fn in_extents(&self) -> bool {
+    /// Whether nothing is known of the equations beforehand. Then the planes of nodes also regard how far each variable moves along the orbit: those
+    /// across the flow cut an orbit that is thin in one variable at a shallow angle. And a stiff orbit takes an implicit method.
+    fn is_any_system(&self) -> bool {
         false
     }
 
@@ -44,11 +44,6 @@ pub trait ParametrisedField: Sync {
     /// displacements are measured.
     fn across(&self, _x: &Vector, flow: &Vector) -> Matrix {
         projection(flow)
-    }
-
-    /// Whether strong damping may be part of an orbit, which then takes an implicit method.
-    fn may_be_stiff(&self) -> bool {
-        false
     }
 
     /// The units of the variables, where lengths are told in others.

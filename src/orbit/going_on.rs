@@ -9,8 +9,6 @@ use crate::error::Result;
 
 /// What a first correction may be.
 const FAR_OFF: f64 = 0.15;
-/// By how much the way of a variable may grow or shrink in a step.
-const LARGER: f64 = 2.5;
 /// From where on the period is looked at half way too: what it is off its prediction by, in parts of its predicted change and of itself. And
 /// what it may be off there from a smooth change, in parts of what a jump would make.
 const AHEAD: f64 = 0.3;
@@ -29,9 +27,6 @@ impl OrbitCurve<'_, '_> {
     ) -> Result<()> {
         let DirectedPoint { here, direction } = from;
         let [period, to] = [here, next].map(|orbit| orbit.site.shooting.period());
-        if !here.site.shooting.is_like(&next.site.shooting, LARGER) {
-            return Err(not_near("a step to an orbit of about the same shape"));
-        }
         if next.first > FAR_OFF {
             return Err(not_near("a step whose end is near the predicted one"));
         }

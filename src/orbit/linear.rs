@@ -429,7 +429,7 @@ fn frames_of(
 ) -> Vec<Matrix> {
     /// In parts of what the liveliest variable moves by: what moves by less beside it moves by rounding.
     const LEAST: f64 = 0.01;
-    let extents = match family.in_extents() {
+    let extents = match family.is_any_system() {
         true => shooting.extents(),
         false => Vector::repeat(family.dimension(), 1.0),
     };

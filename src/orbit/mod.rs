@@ -70,6 +70,7 @@ pub use shooting_nodes::ShootingNodes;
 pub(crate) use shooting_nodes::of_digits;
 pub use small_orbits::SmallOrbits;
 pub use solve::{Orbit, OrbitAccuracy};
+pub(crate) use stiffness::method_for;
 pub use switch::Switch;
 pub use test_function::{Spectrum, TestFunction};
 pub use within::{AlongArcs, SplitRate, within_clusters};

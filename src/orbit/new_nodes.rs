@@ -12,8 +12,9 @@ use crate::field::Vector;
 /// ln of what an arc of a new mesh may grow by, and one of an old mesh.
 const GROWTH: f64 = 5.0;
 const GROWN: f64 = 7.0;
-/// What two displacements that are the same may differ by, in parts of themselves.
-const AGREED: f64 = 0.25;
+/// The cosine between two displacements that are the same, and by how much one may be longer.
+const AGREED: f64 = 0.95;
+const LONGER: f64 = 3.0;
 /// A product of two slopes of the parameters that is no rounding.
 const SLOPES: f64 = 1e-12;
 /// Nodes whose displacement is less than this part of that of the parameters, both squared, stay where they are but for rounding.
@@ -81,9 +82,11 @@ impl OrbitCurve<'_, '_> {
             // The same direction moves the orbit and the parameters in the same way, whatever the nodes. Along a canard the parameters are
             // rounding, as on a vertical branch; and what the flow says may be rounding.
             let (of_flow, new_moved) = (moved.dot(&new.nodes[node]), &new.nodes[node]);
-            let off = (&moved - new_moved * of_flow.signum()).norm();
             let of_parameters = product(&parameters, &new.parameters);
-            let agreed = off < AGREED * moved.norm().max(new_moved.norm());
+            // Their lengths are those of directions over other nodes.
+            let lengths = moved.norm() * new_moved.norm();
+            let alike = (moved.norm() / new_moved.norm()).ln().abs() < LONGER.ln();
+            let agreed = alike && of_flow.abs() > AGREED * lengths;
             let moves = moved.norm_squared() > STILL * of_parameters.abs();
             if (agreed && moves) || of_parameters.abs() < SLOPES {
                 of_flow

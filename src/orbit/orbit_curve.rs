@@ -1,6 +1,6 @@
 //! Periodic orbits as a curve that can be followed: along a branch, one parameter free, or a curve of bifurcations, with both.
 
-use super::certain::certain;
+use super::certain::{CLEAR, certain};
 use super::continuation_point::{ContinuationPoint, TangentVector};
 use super::correct::{Condition, Corrector, Goal, Regular};
 use super::new_nodes::no_nodes;
@@ -68,6 +68,8 @@ const PROGRESS: f64 = 2e-7;
 /// By how much the time to the next plane is expected to change in a step, at most; and the period, which a second time around doubles.
 const STRETCH: f64 = 2.0;
 const LONGER: f64 = 1.8;
+/// By how much the way of a variable may grow or shrink in a step.
+const LARGER: f64 = 2.5;
 /// Shorter steps are not looked at for their sense.
 const ANY_SENSE: f64 = 1e-5;
 /// A slope along a parameter that is small enough where it has no condition of its own.
@@ -231,6 +233,9 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
         if (to / period).ln().abs() > LONGER.ln() {
             return Err(not_near("a step to an orbit of about the same period"));
         }
+        if !here.site.shooting.is_like(&next.site.shooting, LARGER) {
+            return Err(not_near("a step to an orbit of about the same shape"));
+        }
         if self.settings.test_function.is_none() {
             self.goes_on(from, distance, (&predicted, &next))?;
         }
@@ -338,8 +343,17 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
         let here = found.ok()?;
         let direction = self.settings.direction(&here, &near.direction);
         let direction = direction.unwrap_or_else(|| near.direction.clone());
-        let distance = from.direction.dot(&here.site.from(&from.here.site));
+        let distance = self.distance(from, &here.site);
         Some((distance, DirectedPoint { here, direction }))
+    }
+
+    fn is_clear(&self, (watch, values): (WatchedFunction, [f64; 2])) -> bool {
+        matches!(watch, WatchedFunction::TestFunction(_))
+            && values.iter().all(|value| value.abs() > CLEAR)
+    }
+
+    fn error(&self, at: &DirectedPoint) -> f64 {
+        at.here.residual
     }
 
     fn flat(&self) -> f64 {
@@ -368,6 +382,17 @@ impl OrbitCurve<'_, '_> {
         let free = &self.settings.free;
         self.corrector
             .correct_beside(nearby, guess, free, conditions, Goal::STEP)
+    }
+}
+
+impl OrbitCurve<'_, '_> {
+    /// How far an orbit is in the direction of a point, as [`SolutionCurve::correct`] measures it: without what nodes are moved along the flow.
+    fn distance(&self, from: &DirectedPoint, to: &ContinuationPoint) -> f64 {
+        let DirectedPoint { here, direction } = from;
+        let field = self.corrector.family.field(here.site.at);
+        let way = [to.from(&here.site)];
+        let across = here.linear.in_planes(&field, &here.site.shooting, &way);
+        direction.dot(&across[0])
     }
 }
 

@@ -131,11 +131,7 @@ impl ParametrisedField for OverText<'_> {
         [first, if same { 0.0 } else { second }]
     }
 
-    fn may_be_stiff(&self) -> bool {
-        true
-    }
-
-    fn in_extents(&self) -> bool {
+    fn is_any_system(&self) -> bool {
         true
     }
 

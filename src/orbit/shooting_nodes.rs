@@ -281,7 +281,7 @@ impl ShootingNodes {
     }
 
     /// How far each variable moves, between its smallest and its largest value at the nodes.
-    pub(super) fn extents(&self) -> Vector {
+    pub(crate) fn extents(&self) -> Vector {
         let values = |i: usize| self.nodes.iter().map(move |x| x[i]);
         Vector::from_fn(self.dimension(), |i, _| {
             values(i).fold(f64::NEG_INFINITY, f64::max) - values(i).fold(f64::INFINITY, f64::min)
@@ -289,7 +289,7 @@ impl ShootingNodes {
     }
 
     /// The same; of a variable that does not move, its value.
-    pub(super) fn sizes(&self) -> Vector {
+    pub(crate) fn sizes(&self) -> Vector {
         let extents = self.extents();
         Vector::from_fn(self.dimension(), |i, _| {
             let value = self

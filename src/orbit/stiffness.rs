@@ -46,7 +46,7 @@ impl Tracer {
     ///
     /// # Errors
     /// [`crate::Error::Parameter`] for a tolerance outside its domain.
-    pub(super) fn for_orbit(
+    pub(crate) fn for_orbit(
         method: Choice,
         tolerance: f64,
         (arc, all): (usize, usize),

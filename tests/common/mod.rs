@@ -3,6 +3,7 @@
 pub mod among;
 pub mod branches;
 pub mod heard;
+pub mod in_units;
 pub mod ivp;
 pub mod laboratory;
 pub mod lorenz;

@@ -145,6 +145,15 @@ pub enum Ending {
     Interrupted,
 }
 
+/// A negative number with a negative exponent, without that: `-1e-5` is taken for an option.
+fn plain_number(word: OsString) -> OsString {
+    let number = word.to_str().filter(|word| word.starts_with('-'));
+    match number.and_then(|word| word.parse::<f64>().ok()) {
+        Some(number) if number.is_finite() => number.to_string().into(),
+        _ => word,
+    }
+}
+
 /// Messages on wrong usage that are longer lose what is in the midst of them.
 const LONGEST: usize = 1200;
 /// Exit status of a failed computation.
@@ -158,7 +167,7 @@ const INTERRUPTED: u8 = 130;
 
 /// Parses the arguments, runs, and says how it ended.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let arguments: Vec<OsString> = arguments.into_iter().map(plain_number).collect();
     interrupt::listen();
     // A file that grows larger than is allowed is then an error of writing, and not the end of the process.
     #[cfg(unix)]

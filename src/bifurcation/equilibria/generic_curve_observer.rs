@@ -89,6 +89,47 @@ impl Observer<'_, '_> {
         }
     }
 
+    /// The values of the first coordinate that are landed on: the ends of its range, and those that are wanted.
+    fn values(&self) -> impl Iterator<Item = f64> {
+        let FirstCoordinate { range, wanted } = self.first;
+        [range.0, range.1].into_iter().chain(wanted.iter().copied())
+    }
+
+    /// The unknowns of a point; where it is one of these values, with that in the place of what a continuation along the other coordinate came to.
+    fn landed(&self, mark: PointKind, point: &CurvePoint) -> Vector {
+        let u = point.u.push(point.lambda);
+        let first = u.len() - 2;
+        let PointKind::Zero(i) = mark else {
+            return u;
+        };
+        let value = i.checked_sub(FUNCTIONS).and_then(|i| self.values().nth(i));
+        let on_value = value.and_then(|value| {
+            let mut near = u.clone();
+            near[first] = value;
+            let held = Vector::from_fn(u.len(), |k, _| f64::from(u8::from(k == first)));
+            let mut there = self.problem.across(&near, &held)?;
+            there[first] = value;
+            Some(there)
+        });
+        on_value.unwrap_or(u)
+    }
+
+    /// Whether a zero of the i-th function is one: at a cusp the curve goes along the kernel. Where the kernel is across the curve the sign of that
+    /// function is changed.
+    fn is_zero(&self, i: usize, u: &Vector, along: &Vector) -> Option<bool> {
+        /// Of the tangent, which at a cusp is the kernel.
+        const ALONG: f64 = 0.5;
+        if (self.problem.0.kind, i) != (EquilibriumBifurcation::Fold, 0) {
+            return Some(true);
+        }
+        let tangent = self.problem.tangent(u, along)?;
+        let n = u.len() - 2;
+        let field = self.problem.0.family.field([u[n], u[n + 1]]);
+        let tangent = tangent.rows(0, n).into_owned();
+        let kernel = kernel(&field.jacobian(&self.problem.state(u)), &tangent)?;
+        Some(kernel.dot(&tangent) > ALONG)
+    }
+
     /// The function that is zero at a point, if there is one.
     fn zero_at(&self, point: &CurvePoint) -> Option<usize> {
         const ZERO: f64 = 1e-14;
@@ -169,7 +210,8 @@ impl Observer<'_, '_> {
             let by_bend = bend[n + k].abs() * off_along * off_along;
             across[n + k] + off_along * tangent[n + k].abs() + by_bend + least
         });
-        off.iter().all(|x| x.is_finite()).then_some((u, off))
+        let known = off.iter().all(|x| x.is_finite()) && self.is_zero(i, &u, &tangent)?;
+        known.then_some((u, off))
     }
 }
 
@@ -178,11 +220,9 @@ impl CurveObserver for Observer<'_, '_> {
         let mut all = self
             .functions(&point.u.push(point.lambda), &point.tangent)?
             .to_vec();
-        let (first, FirstCoordinate { range, wanted }) = (point.u[point.u.len() - 1], self.first);
-        let ends = [range.0, range.1].into_iter();
-        let values = ends.chain(wanted.iter().copied());
+        let first = point.u[point.u.len() - 1];
         // An infinite end is never met.
-        all.extend(values.map(|value| {
+        all.extend(self.values().map(|value| {
             if value.is_finite() {
                 first - value
             } else {
@@ -217,7 +257,7 @@ impl CurveObserver for Observer<'_, '_> {
         }
         let u = match &special {
             Some((u, _)) => u.clone(),
-            None => point.u.push(point.lambda),
+            None => self.landed(mark, point),
         };
         let (state, at) = self.problem.at(&u, u[n + 1]);
         let field = self.problem.0.family.field(at);
@@ -247,6 +287,8 @@ impl CurveObserver for Observer<'_, '_> {
                 budget.map(|budget| [budget[n], 0.0])
             }
         };
+        // Where it is zero what is left of it is rounding.
+        let frequency = frequency.filter(|_| label != Some(Label::Bt));
         let coefficient = frequency.and_then(|omega| lyapunov(&field, &state, omega));
         (self.seen)(&EquilibriumCurvePoint {
             state,

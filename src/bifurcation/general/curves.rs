@@ -136,12 +136,16 @@ impl ParametrisedField for Exchanged<'_> {
         self.0.normal(x, flow)
     }
 
-    fn in_extents(&self) -> bool {
-        self.0.in_extents()
+    fn is_any_system(&self) -> bool {
+        self.0.is_any_system()
     }
 
     fn across(&self, x: &Vector, flow: &Vector) -> Matrix {
         self.0.across(x, flow)
+    }
+
+    fn units(&self) -> Option<&[f64]> {
+        self.0.units()
     }
 }
 

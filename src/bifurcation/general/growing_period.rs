@@ -14,7 +14,7 @@ use crate::bifurcation::orbits::{ARC, ROUGH, WORK};
 use crate::field::Vector;
 use crate::integrate::AnyField;
 use crate::number::{Uncertain, eigenvalues};
-use crate::orbit::{Regular, ShootingNodes, Tracer};
+use crate::orbit::{Regular, ShootingNodes, Tracer, method_for};
 use nalgebra::Complex;
 use std::ops::ControlFlow::Continue;
 
@@ -195,7 +195,8 @@ impl Passage {
     fn of(field: &AnyField<'_>, orbit: &ShootingNodes) -> Option<Self> {
         /// Places on each arc.
         const PLACES: usize = 16;
-        let mut tracer = Tracer::limited(ROUGH, ARC, WORK).ok()?;
+        let method = method_for(field, orbit);
+        let mut tracer = Tracer::for_orbit(method, ROUGH, (ARC, WORK)).ok()?;
         let mut places = orbit.nodes.clone();
         for i in 1..PLACES {
             let part = i as f64 / PLACES as f64;

@@ -4,7 +4,7 @@ use super::growing_period::{Limit, Periods};
 use super::multipliers_together::{Outside, is_real};
 use super::orbit_point::{special_orbit, sum_of_pair};
 use super::orbits::OrbitBranches;
-use super::{FREE, GeneralEvent, GeneralPoint, SAME, Teller};
+use super::{FREE, GeneralEvent, GeneralPoint, GeneralSolution, SAME, Teller};
 use crate::bifurcation::Label;
 use crate::bifurcation::orbits::normal_form::{Form, normal_form};
 use crate::bifurcation::orbits::{Vertical, embedded, middle, refined};
@@ -171,7 +171,8 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
     ) -> ControlFlow<()> {
         let here = &now.here;
         let last = &before.here.site;
-        if let Some(i) = palc.ends_at_coordinate(last, &self.set.coordinates) {
+        let ends_at = palc.ends_at_coordinate(last, &self.set.coordinates);
+        if let Some(i) = ends_at.filter(|&i| grows_as_at(&self.set.hopfs[i].1, here)) {
             if self.from_hopf == Some(i) {
                 // One branch begins at a Hopf point: along a canard a step has turned round.
                 let why =
@@ -361,4 +362,28 @@ fn turns(from: &DirectedPoint, at: &DirectedPoint, to: &DirectedPoint) -> bool {
     let most = from.abs().max(to.abs());
     let part = if from * to < 0.0 { ONCE } else { TWICE };
     most < ROUNDING || at.abs() < part * most
+}
+
+/// Whether all multipliers of an orbit are about those at a Hopf point. Else the branch has yet to pass what makes them so.
+fn grows_as_at(hopf: &GeneralPoint, orbit: &Regular) -> bool {
+    /// What a logarithm may be off, of itself and beside that; and below which all are as good as none.
+    const OFF: f64 = 0.3;
+    const NONE: f64 = -20.0;
+    let (GeneralSolution::Equilibrium { eigenvalues, .. }, Some(period)) =
+        (&hopf.solution, hopf.period)
+    else {
+        return true;
+    };
+    // One of the critical pair is the trivial multiplier.
+    let mut all: Vec<f64> = eigenvalues.iter().map(|z| z.re * period.value).collect();
+    let critical = (0..all.len()).min_by(|&i, &j| all[i].abs().total_cmp(&all[j].abs()));
+    if let Some(critical) = critical {
+        all.remove(critical);
+    }
+    all.sort_by(|a, b| b.total_cmp(a));
+    let near = |(at_hopf, here): (&f64, &f64)| {
+        let (a, b) = (at_hopf.max(NONE), here.max(NONE));
+        here.is_nan() || (a - b).abs() <= OFF * (1.0 + a.abs())
+    };
+    all.iter().zip(&orbit.log_multipliers()).all(near)
 }

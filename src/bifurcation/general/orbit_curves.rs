@@ -1,22 +1,25 @@
 //! Curves of bifurcations of periodic orbits in the plane of two parameters, with their resonances.
 
-use super::curves::{in_order, looked_along, scanned};
+use super::curves::{equilibrium_curves, in_order, looked_along, scanned};
 use super::orbit_point::{orbit_point, special_orbit, sum_of_pair};
 use super::orbits::{new_corrector, orbits};
 use super::{
     GeneralBranch, GeneralCurve, GeneralEvent, GeneralObserver, GeneralPoint, GeneralSolution,
     SAME, Teller,
 };
+use crate::bifurcation::equilibria::generic_curve::EquilibriumBifurcation;
 use crate::bifurcation::orbits::normal_form::{Form, normal_form};
 use crate::bifurcation::orbits::{CoefficientCurve, Decided, LONGEST, embedded, middle};
 use crate::bifurcation::{Criticality, Label};
 use crate::continuation::{Met, Stop};
 use crate::error::Result;
+use crate::field::Vector;
 use crate::number::Uncertain;
 use crate::orbit::{
     Condition, ContinuationPoint, DirectedPoint, Goal, Palc, PalcSettings, ParametrisedField,
-    Regular, TangentVector, TestFunction, WatchedFunction,
+    Regular, ShootingNodes, TangentVector, TestFunction, WatchedFunction,
 };
+use std::cell::OnceCell;
 use std::f64::consts::PI;
 use std::ops::ControlFlow::{self, Break, Continue};
 
@@ -29,6 +32,9 @@ const RESONANCES: [(Label, f64); 4] = [
     (Label::R3, -1.0),
     (Label::R4, 0.0),
 ];
+
+/// A curve of folds of orbits this much smaller than the largest shrinks to an equilibrium.
+const SHRUNK: f64 = 0.05;
 
 /// Follows all curves of this bifurcation of orbits through the ranges and hands on what is found.
 ///
@@ -46,6 +52,7 @@ pub fn orbit_curves(
         along: 0,
         count: 0,
         passes: Vec::new(),
+        degenerate: OnceCell::new(),
     };
     test_function.checked(curves.family().dimension())?;
     for along in [0, 1] {
@@ -78,6 +85,8 @@ struct OrbitCurves<'c, 'a> {
     count: usize,
     /// Where curves pass the values at which bifurcations are looked for: both coordinates and ln T.
     passes: Vec<[f64; 3]>,
+    /// Degenerate Hopf points in the ranges, once they were asked for.
+    degenerate: OnceCell<Vec<GeneralPoint>>,
 }
 
 fn pass(site: &ContinuationPoint) -> [f64; 3] {
@@ -248,6 +257,7 @@ impl<'a> OrbitCurves<'_, 'a> {
         let begin = pass(&here.site);
         let watches = self.watches();
         let mut decided = None;
+        let mut largest = here.site.shooting.sizes();
         self.change(number, &mut decided, here);
         let end = palc.follow(&watches, STEPS, &mut |palc, _, met| match met {
             Met::Zero(watch, at) => {
@@ -268,7 +278,16 @@ impl<'a> OrbitCurves<'_, 'a> {
                     Some(way) => point.classified(way),
                     None => point,
                 };
-                seen(point, false)
+                seen(point, false)?;
+                let extents = now.here.site.shooting.extents();
+                largest = largest.sup(&extents);
+                if (0..largest.len()).all(|i| extents[i] < SHRUNK * largest[i])
+                    && let Some(end) = self.degenerate_hopf_point(number, &now.here)
+                {
+                    seen(end, true)?;
+                    return Break(());
+                }
+                Continue(())
             }
         })?;
         if end != Stop::Observer {
@@ -277,6 +296,66 @@ impl<'a> OrbitCurves<'_, 'a> {
             let _ = seen(point, true);
         }
         Ok(())
+    }
+
+    /// The degenerate Hopf point to which a curve of folds shrinks. Beside it the fold's condition is a small power of the orbit's size, and soon
+    /// rounding.
+    fn degenerate_hopf_point(&self, number: usize, orbit: &Regular) -> Option<GeneralPoint> {
+        /// Of the ranges, and of the period; and of how far the orbit goes.
+        const NEAR: f64 = 0.05;
+        const BESIDE: f64 = 2.0;
+        if self.test_function != TestFunction::Fold {
+            return None;
+        }
+        let all = self
+            .degenerate
+            .get_or_init(|| self.degenerate_hopf_points());
+        let ContinuationPoint { shooting, at } = &orbit.site;
+        let extents = shooting.extents();
+        let ranges = self.curve.ranges;
+        let near = |point: &&GeneralPoint| {
+            let GeneralSolution::Orbit { shooting: rest, .. } = &point.solution else {
+                return false;
+            };
+            let off = |x: &Vector| (x - &rest.nodes[0]).component_div(&extents).amax();
+            let part = |i: usize| (point.at[i] - at[i]) / (ranges[i].1 - ranges[i].0);
+            let of_period = (shooting.period() / rest.period()).ln();
+            shooting.nodes.iter().all(|x| off(x) < BESIDE)
+                && [part(0), part(1), of_period]
+                    .iter()
+                    .all(|off| off.abs() < NEAR)
+        };
+        let found = all.iter().find(near)?;
+        Some(GeneralPoint {
+            number,
+            ..found.clone()
+        })
+    }
+
+    /// All in the ranges, as orbits that have shrunk to a point.
+    fn degenerate_hopf_points(&self) -> Vec<GeneralPoint> {
+        let mut found = Vec::new();
+        let mut look = |event| {
+            if let GeneralEvent::Row(point) = event
+                && point.label == Some(Label::Gh)
+                && let GeneralSolution::Equilibrium { state, .. } = &point.solution
+                && let Some(period) = point.period
+            {
+                let log_multipliers = vec![0.0; state.len() - 1];
+                let shooting = ShootingNodes {
+                    nodes: vec![state.clone()],
+                    durations: vec![period.value],
+                };
+                let solution = GeneralSolution::Orbit {
+                    shooting,
+                    log_multipliers,
+                };
+                found.push(GeneralPoint { solution, ..point });
+            }
+            Continue(())
+        };
+        let all = equilibrium_curves(self.curve, EquilibriumBifurcation::Hopf, &mut look);
+        all.map_or_else(|_| Vec::new(), |()| found)
     }
 
     fn zero(

@@ -70,6 +70,7 @@ pub fn refined(
     for (tolerance, part) in SOLUTIONS {
         let mut corrector = Corrector::new(family, tolerance).ok()?;
         let begin = solutions.first().map_or(near, |first| &first.site);
+        corrector.suit(begin).ok()?;
         let field = family.field(begin.at);
         // Few long arcs round least often.
         let shooting = if solutions.is_empty() {

@@ -1,0 +1,146 @@
+//! Special points that a step had jumped over or invented: each is told, and no others.
+
+use crate::command::{self, number};
+use serde_json::Value;
+
+/// Labels of the special points of a command, with these numbers of each and their bounds.
+fn points(command: &str, of: &[&str]) -> Vec<(String, Vec<[f64; 2]>)> {
+    let ended = command::twinslip(&format!("{command} --format json -q"));
+    assert_eq!(ended.code, 0, "{command}: {}", ended.err);
+    let made: Value = serde_json::from_str(&ended.out).expect("JSON");
+    let special = made["result"]["special"].as_array().expect("a list").iter();
+    let told = |one: &Value, name: &str| {
+        ["value", "uncertainty"].map(|part| one[name][part].as_f64().unwrap_or(f64::INFINITY))
+    };
+    let point = |one: &Value| {
+        let label = one["label"].as_str().expect("a label").to_owned();
+        (label, of.iter().map(|name| told(one, name)).collect())
+    };
+    special.map(point).collect()
+}
+
+fn labels(points: &[(String, Vec<[f64; 2]>)]) -> Vec<&str> {
+    points.iter().map(|(label, _)| label.as_str()).collect()
+}
+
+/// Nodes of predicted orbits are moved along the flow. A fold that Newton's method finds is on the step all the same.
+#[test]
+fn a_fold_on_a_short_step_is_met() {
+    let file = "tests/data/oscillators/ab-reaction.toml";
+    let found = points(
+        &format!("branch orbits --system {file} --along D --from 0.01 --to 0.4 --step-limit 0.5"),
+        &["D"],
+    );
+    assert_eq!(labels(&found), ["HB", "SN", "HB"], "{found:?}");
+    assert!((found[1].1[0][0] - 0.161_696_129).abs() < 1e-9, "{found:?}");
+}
+
+/// Of two small orbits the larger may have nodes that are less far apart, and a branch does not end where it begins to grow. Koper's model is odd: each
+/// point has its image.
+#[test]
+fn a_branch_goes_on_to_the_hopf_point_at_its_end() {
+    let file = "tests/data/cases/koper-in-units.toml";
+    let found = points(
+        &format!("branch orbits --system {file} --along l --from -48482.4 --to 48482.4"),
+        &["l"],
+    );
+    let known = ["HB", "PD", "PD", "SN", "SN", "SN", "SN", "PD", "PD", "HB"];
+    assert_eq!(labels(&found), known, "{found:?}");
+    for (a, b) in found.iter().zip(found.iter().rev()) {
+        let ([a, off], [b, other]) = (a.1[0], b.1[0]);
+        assert!((a + b).abs() <= off + other, "{a} {b}");
+    }
+}
+
+/// Away from cusps the kernel may be across the curve, where the sign that is taken of it changes.
+#[test]
+fn no_cusp_is_told_where_the_kernel_is_across_the_curve() {
+    let file = "tests/data/cases/co-oxidation-in-units.toml";
+    let found = points(
+        &format!("locus saddle-node --system {file} --in k2,K --range k2=0.5,2 --range K=0.2,0.6"),
+        &["k2"],
+    );
+    assert_eq!(labels(&found), ["EP", "CP", "EP"], "{found:?}");
+}
+
+/// An end of a range is the end itself, and known as well as that.
+#[test]
+fn curves_of_equilibria_end_at_the_ends_of_both_ranges() {
+    let file = "tests/data/models/jansen-rit.toml";
+    let found = points(
+        &format!("locus hopf --system {file} --in p,A --range p=50,350 --range A=2.5,4"),
+        &["p", "A"],
+    );
+    assert_eq!(labels(&found), ["EP"; 4], "{found:?}");
+    for (_, at) in &found {
+        let exact = |x: f64| [50.0, 350.0, 2.5, 4.0].contains(&x);
+        let held = at.iter().filter(|[x, off]| exact(*x) && *off == 0.0);
+        assert_eq!(held.count(), 1, "{found:?}");
+    }
+}
+
+/// The frequency is zero there.
+#[test]
+fn a_double_zero_has_no_period() {
+    let file = "tests/data/models/cstr.toml";
+    let found = points(
+        &format!("locus hopf --system {file} --in tau,Tc --range tau=40,90 --range Tc=295,315"),
+        &["period"],
+    );
+    let double: Vec<_> = found.iter().filter(|(label, _)| label == "BT").collect();
+    assert!(!double.is_empty(), "{found:?}");
+    assert!(
+        double.iter().all(|(_, of)| of[0][0].is_infinite()),
+        "{found:?}"
+    );
+}
+
+/// A curve of folds shrinks to the degenerate Hopf point that is on the curve of Hopf points, and is not followed back from there.
+#[test]
+fn a_curve_of_folds_ends_at_a_degenerate_hopf_point() {
+    for (file, rho, s0) in [
+        ("oscillators/enzyme-cell", "1,15", "90,130"),
+        (
+            "cases/enzyme-cell-in-units",
+            "61541.11184171677,923116.6776257515",
+            "189106.72661892368,273154.16067177866",
+        ),
+    ] {
+        let ranges = format!("--in rho,s0 --range rho={rho} --range s0={s0}");
+        let of = ["rho", "s0"];
+        let file = format!("tests/data/{file}.toml");
+        let curve = points(
+            &format!("locus orbit-saddle-node --system {file} {ranges}"),
+            &of,
+        );
+        assert_eq!(labels(&curve), ["GH", "EP"], "{curve:?}");
+        let hopf = points(&format!("locus hopf --system {file} {ranges}"), &of);
+        let on_it = hopf.iter().find(|(label, _)| label == "GH").expect("GH");
+        assert_eq!(on_it.1, curve[0].1);
+    }
+}
+
+/// The last point of a branch is solved anew by the method that the orbit asks for: Taylor's would take a million steps a period.
+#[test]
+fn a_branch_ends_at_the_period_of_a_stiff_orbit() {
+    let file = "tests/data/cases/van-der-pol-stiff.toml";
+    let found = points(
+        &format!("branch orbits --system {file} --along mu --from 0.5 --to 1e6"),
+        &["period"],
+    );
+    let [period, off] = found.last().expect("an end").1[0];
+    // Of 18 digits in 40-digit arithmetic.
+    let known = 1_613_705.709_012_797_9;
+    assert!((period - known).abs() <= off, "{period} ± {off}");
+    assert!(off < 1e-10 * known, "{off}");
+}
+
+#[test]
+fn numbers_may_have_both_signs() {
+    let text =
+        "branch equilibria --system lorenz --along r --from -1.5e-05 --to 3 --format json -q";
+    let ended = command::twinslip(text);
+    assert_eq!(ended.code, 0, "{}", ended.err);
+    let made: Value = serde_json::from_str(&ended.out).expect("JSON");
+    assert_eq!(number(&made, "/numerics/from"), -1.5e-5);
+}
