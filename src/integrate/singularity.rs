@@ -7,9 +7,9 @@ use nalgebra::SVector;
 /// Spacings of the numbers around t within which a singularity is at t, to rounding.
 const NEAR: f64 = 1e5;
 /// Length of a probing step, relative to the state.
-const PACE: f64 = 1e-3;
+const PACE: f64 = 1e-2;
 /// Bound on them. From 1 to the largest number there are 710 / `PACE`.
-const PACES: usize = 1_000_000;
+const PACES: usize = 100_000;
 
 /// Acceleration that no burst shows which ends within the numbers, if its derivatives have already left them.
 const RUNAWAY: f64 = 1e100;
