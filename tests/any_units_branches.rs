@@ -82,7 +82,7 @@ fn branches_of_orbits_are_the_same_in_any_units() {
         ("circadian-per", "hr", 2520.0, 4680.0),
         ("colpitts", "R", 40.0, 200.0),
         ("connor-stevens", "I", 100.0, 500.0),
-        ("cstr", "tau", 50.0, 68.0),
+        ("cstr", "tau", 40.0, 80.0),
         ("cstr", "Tc", 295.0, 315.0),
         ("goldbeter-lefever", "v", 0.1, 1.5),
         ("goldbeter-mitotic", "mi", 42.0, 78.0),

@@ -113,10 +113,10 @@ fn a_curve_of_folds_ends_at_a_degenerate_hopf_point() {
             &format!("locus orbit-saddle-node --system {file} {ranges}"),
             &of,
         );
-        assert_eq!(labels(&curve), ["GH", "EP"], "{curve:?}");
+        assert_eq!(labels(&curve), ["EP", "GH"], "{curve:?}");
         let hopf = points(&format!("locus hopf --system {file} {ranges}"), &of);
         let on_it = hopf.iter().find(|(label, _)| label == "GH").expect("GH");
-        assert_eq!(on_it.1, curve[0].1);
+        assert_eq!(on_it.1, curve[1].1);
     }
 }
 

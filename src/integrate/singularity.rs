@@ -101,7 +101,6 @@ pub fn time_to_singularity<const N: usize>(
         let unit = k1 / k1.amax();
         // d|f|^2/dt = 2 f . J f, with f scaled: its square may overflow.
         let growth = unit.dot(&(field.jacobian(&y) * unit)) * direction;
-        left += PACE * time;
         if !growth.is_finite() {
             // The derivatives overflow, or make inf * 0, where the field itself does not yet.
             return (first / time > RUNAWAY && left <= most).then_some(left);
@@ -110,9 +109,10 @@ pub fn time_to_singularity<const N: usize>(
             return None;
         }
         // The method of Runge (1895): the solution is only looked at, not computed.
-        let Some((k2, _)) = pace(&(y + k1 * (0.5 * PACE))) else {
+        let Some((k2, time)) = pace(&(y + k1 * (0.5 * PACE))) else {
             return Some(left);
         };
+        left += PACE * time;
         if k2.dot(&k1) <= 0.0 {
             return None;
         }

@@ -356,7 +356,10 @@ impl<'a> Corrector<'a> {
                         let field = self.family.field(site.at);
                         let upright = linear.upright(self.family, &field, &site.shooting);
                         let (_, turned) = upright.solutions(free, self.family.scale(site.at))?;
-                        let before = linear.in_planes(&field, &site.shooting, &turned);
+                        let before = turned.iter();
+                        let before =
+                            before.map(|one| linear.in_planes(&field, &site.shooting, one));
+                        let before: Vec<_> = before.collect();
                         let carried = |gradient| carried(gradient, (&along, &before), &turned);
                         let gradients = known.iter().map(carried).collect::<Option<_>>()?;
                         (upright, turned, gradients)
@@ -382,6 +385,13 @@ impl<'a> Corrector<'a> {
             last = size;
         }
         None
+    }
+
+    /// A displacement of an orbit's nodes in their planes: moved along the flow.
+    pub(super) fn in_planes(&self, orbit: &Regular, displacement: &TangentVector) -> TangentVector {
+        let ContinuationPoint { shooting, at } = &orbit.site;
+        let field = self.family.field(*at);
+        orbit.linear.in_planes(&field, shooting, displacement)
     }
 
     /// An orbit as it stands, with its surroundings and the gradients of the conditions' test functions.

@@ -90,22 +90,19 @@ impl Linear {
         Self::assembled(field, shooting, Shared::clone(&self.arcs), frames)
     }
 
-    /// Displacements of these nodes in other planes as displacements in these: moved along the flow, which changes no orbit. Their durations
-    /// stay as they are.
+    /// A displacement of these nodes in other planes as one in these: moved along the flow, which changes no orbit. Their durations stay as they
+    /// are.
     pub fn in_planes(
         &self,
         field: &AnyField<'_>,
         shooting: &ShootingNodes,
-        displacements: &[TangentVector],
-    ) -> Vec<TangentVector> {
-        let flows: Vec<Vector> = shooting.nodes.iter().map(|x| field.f(x)).collect();
-        let mut moved = displacements.to_vec();
-        for displacement in &mut moved {
-            for (k, dx) in displacement.nodes.iter_mut().enumerate() {
-                let (normal, flow) = (self.frames[k].column(0), &flows[k]);
-                let along = normal.dot(dx) / normal.dot(flow);
-                dx.axpy(-along, flow, 1.0);
-            }
+        displacement: &TangentVector,
+    ) -> TangentVector {
+        let mut moved = displacement.clone();
+        for (k, (dx, x)) in moved.nodes.iter_mut().zip(&shooting.nodes).enumerate() {
+            let (normal, flow) = (self.frames[k].column(0), field.f(x));
+            let along = normal.dot(dx) / normal.dot(&flow);
+            dx.axpy(-along, &flow, 1.0);
         }
         moved
     }

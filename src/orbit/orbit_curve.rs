@@ -389,10 +389,8 @@ impl OrbitCurve<'_, '_> {
     /// How far an orbit is in the direction of a point, as [`SolutionCurve::correct`] measures it: without what nodes are moved along the flow.
     fn distance(&self, from: &DirectedPoint, to: &ContinuationPoint) -> f64 {
         let DirectedPoint { here, direction } = from;
-        let field = self.corrector.family.field(here.site.at);
-        let way = [to.from(&here.site)];
-        let across = here.linear.in_planes(&field, &here.site.shooting, &way);
-        direction.dot(&across[0])
+        let way = self.corrector.in_planes(here, &to.from(&here.site));
+        direction.dot(&way)
     }
 }
 

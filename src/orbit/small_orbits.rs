@@ -97,7 +97,11 @@ impl<'c, 'f> Palc<'c, 'f> {
             match found {
                 Err(error) if size < LEAST => return Err(error),
                 Err(_) => size *= SMALLER,
-                Ok(found) => return Palc::at(corrector, settings, found, &outwards),
+                Ok(found) => {
+                    // Of a thin ellipse planes are cut at any angle.
+                    let outwards = corrector.in_planes(&found, &outwards);
+                    return Palc::at(corrector, settings, found, &outwards);
+                }
             }
         }
     }

@@ -1,8 +1,8 @@
 //! Where a branch of orbits ends as their period grows without bound: at an orbit that is homoclinic to a saddle, or at a saddle-node on the
 //! cycle.
 //!
-//! Beside a saddle the parameter tends to its limit as e^(-k T), k being the least of the real parts of the saddle's eigenvalues (Shilnikov, Shilnikov, Turaev &
-//! Chua 2001, Methods of qualitative theory in nonlinear dynamics, chapter 13); beside a saddle-node as T^(-2) (Strogatz 1994, section 8.4). Two pairs of orbits have to agree
+//! Beside a saddle the parameter tends to its limit as e^(-k T), k being the least of the real parts of the saddle's eigenvalues on one side of the axis
+//! (Shilnikov, Shilnikov, Turaev & Chua 2001, Methods of qualitative theory in nonlinear dynamics, chapter 13); beside a saddle-node as T^(-2) (Strogatz 1994, section 8.4). Two pairs of orbits have to agree
 //! on the limit, by one law or the other. Beside a saddle-focus whose complex eigenvalues are the nearest to the axis the parameter goes to and fro about its limit,
 //! ever less (Glendinning & Sparrow 1984, J. Stat. Phys. 35, 645): then it is between where the last two turns are. Else nothing is said.
 
@@ -48,16 +48,24 @@ impl Periods {
         self.0.pop();
     }
 
+    /// What the coordinates are off, by their corrections.
+    fn off(&self) -> f64 {
+        /// What the orbits of a branch are corrected to, in parts of the coordinate.
+        const CORRECTED: f64 = 1e-12;
+        let all = self.0.iter().map(|[at, _]| at.abs());
+        CORRECTED * all.fold(0.0, f64::max)
+    }
+
+    /// Whether the last two orbits have the same coordinate but for that.
+    pub fn stay(&self) -> bool {
+        let last = self.0.last_chunk::<2>();
+        last.is_some_and(|[a, b]| (b[0] - a[0]).abs() <= self.off())
+    }
+
     /// The limit of the coordinate at the end of the branch, whose last orbit this is; `None` where the period does not grow without bound
     /// as far as can be told.
     pub fn limit(&self, branch: &GeneralBranch<'_>, last: &Regular) -> Option<Limit> {
-        /// What the orbits of a branch are corrected to, in parts of the coordinate.
-        const CORRECTED: f64 = 1e-12;
-        let size = self
-            .0
-            .iter()
-            .fold(0.0, |most, [at, _]| f64::max(most, at.abs()));
-        let off = CORRECTED * size;
+        let off = self.off();
         let near = |limit: Uncertain| {
             let way = self.0.iter().map(|[at, _]| (at - limit.value).abs());
             limit.uncertainty <= NEAR * way.fold(0.0, f64::max)
@@ -70,12 +78,12 @@ impl Periods {
                 is_saddle_node: false,
             });
         }
-        let to_saddle = || {
-            let rate = passed_saddle(branch, last)?.rate();
+        let by_rate = |rate: f64| {
             let falls = |first: f64, second: f64| (rate * (second - first)).exp();
             extrapolated(self.apart(falls)?, falls, off).filter(|limit| near(*limit))
         };
-        if let Some(at) = to_saddle() {
+        let rates = passed_saddle(branch, last).map(|saddle| saddle.rates());
+        if let Some(at) = rates.into_iter().flatten().find_map(by_rate) {
             return Some(Limit {
                 at,
                 is_saddle_node: false,
@@ -168,10 +176,15 @@ fn passed_saddle(branch: &GeneralBranch<'_>, orbit: &Regular) -> Option<Saddle> 
 }
 
 impl Saddle {
-    /// The least absolute value of a real part.
-    fn rate(&self) -> f64 {
-        let real = self.0.iter().map(|z| z.re.abs());
-        real.fold(f64::INFINITY, f64::min)
+    /// The least absolute values of the real parts on either side of the axis, the lesser one first. By that the parameter tends to its limit in the
+    /// end; by the other one before that, where the orbit contracts much on its way around.
+    fn rates(&self) -> [f64; 2] {
+        let mut rates = [1.0, -1.0].map(|side| {
+            let own = self.0.iter().map(|z| z.re * side).filter(|re| *re > 0.0);
+            own.fold(f64::INFINITY, f64::min)
+        });
+        rates.sort_by(f64::total_cmp);
+        rates
     }
 
     /// Whether on either side of the axis the eigenvalues that are nearest to it are complex.

@@ -112,12 +112,15 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         let branch = self.set.branch;
         // What is left of the way may be less than the last orbits are off by.
         let periods = &mut self.periods;
-        let limit = (0..=LEFT_OUT).find_map(|left_out| {
-            if left_out > 0 {
-                periods.pop();
+        let mut left_out = 0;
+        let limit = loop {
+            let limit = periods.limit(branch, last);
+            if limit.is_some() || (left_out >= LEFT_OUT && !periods.stay()) {
+                break limit;
             }
-            periods.limit(branch, last)
-        });
+            periods.pop();
+            left_out += 1;
+        };
         let Some(Limit { at, is_saddle_node }) = limit else {
             return GeneralPoint {
                 note: Some(why.to_owned()),

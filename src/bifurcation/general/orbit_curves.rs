@@ -170,6 +170,9 @@ impl<'a> OrbitCurves<'_, 'a> {
         let Some(direction) = settings.direction(&here, &here.along[0]) else {
             return Ok(Continue(()));
         };
+        // Told with the second coordinate growing, as curves of equilibria are.
+        let sense = direction.parameters[1].signum();
+        let direction = direction.scaled(-sense);
         let number = self.count;
         self.count += 1;
         let mut back = Vec::new();
