@@ -356,10 +356,8 @@ impl<'a> Corrector<'a> {
                         let field = self.family.field(site.at);
                         let upright = linear.upright(self.family, &field, &site.shooting);
                         let (_, turned) = upright.solutions(free, self.family.scale(site.at))?;
-                        let before = turned.iter();
-                        let before =
-                            before.map(|one| linear.in_planes(&field, &site.shooting, one));
-                        let before: Vec<_> = before.collect();
+                        let as_before = |one| linear.in_planes(&field, &site.shooting, one);
+                        let before: Vec<_> = turned.iter().map(as_before).collect();
                         let carried = |gradient| carried(gradient, (&along, &before), &turned);
                         let gradients = known.iter().map(carried).collect::<Option<_>>()?;
                         (upright, turned, gradients)

@@ -4,8 +4,8 @@ use super::curves::{equilibrium_curves, in_order, looked_along, scanned};
 use super::orbit_point::{orbit_point, special_orbit, sum_of_pair};
 use super::orbits::{new_corrector, orbits};
 use super::{
-    GeneralBranch, GeneralCurve, GeneralEvent, GeneralObserver, GeneralPoint, GeneralSolution,
-    SAME, Teller,
+    GeneralBranch, GeneralCurve, GeneralEvent, GeneralFollowing, GeneralObserver, GeneralPoint,
+    GeneralSolution, SAME, Teller,
 };
 use crate::bifurcation::equilibria::generic_curve::EquilibriumBifurcation;
 use crate::bifurcation::orbits::normal_form::{Form, normal_form};
@@ -357,7 +357,14 @@ impl<'a> OrbitCurves<'_, 'a> {
             }
             Continue(())
         };
-        let all = equilibrium_curves(self.curve, EquilibriumBifurcation::Hopf, &mut look);
+        let curve = GeneralCurve {
+            following: GeneralFollowing {
+                skip: Vec::new(),
+                ..self.curve.following.clone()
+            },
+            ..self.curve.clone()
+        };
+        let all = equilibrium_curves(&curve, EquilibriumBifurcation::Hopf, &mut look);
         all.map_or_else(|_| Vec::new(), |()| found)
     }
 
