@@ -144,3 +144,39 @@ fn numbers_may_have_both_signs() {
     let made: Value = serde_json::from_str(&ended.out).expect("JSON");
     assert_eq!(number(&made, "/numerics/from"), -1.5e-5);
 }
+
+/// Of a conservative system every equilibrium is a centre: a pair of eigenvalues is on the axis but for rounding, whose signs are no Hopf points.
+#[test]
+fn centres_are_no_hopf_points() {
+    let file = "tests/data/cases/lotka-volterra-a.toml";
+    let text = format!("branch equilibria --system {file} --along a --from 0.5 --to 2");
+    let ended = command::twinslip(&format!("{text} --format json -q"));
+    assert_eq!(ended.code, 3, "{}", ended.err);
+    let made: Value = serde_json::from_str(&ended.out).expect("JSON");
+    let special = made["result"]["special"].as_array().expect("a list");
+    let labels: Vec<&str> = special
+        .iter()
+        .filter_map(|one| one["label"].as_str())
+        .collect();
+    assert_eq!(labels, ["EP", "EP"]);
+}
+
+/// The first orbits beside a Hopf point are neutral but for 1e-6, and so may an orbit beside a pitchfork be: they are computed again, finer.
+#[test]
+fn orbits_beside_a_bifurcation_are_decided() {
+    for (file, along, from, to) in [
+        (
+            "cases/ab-reaction-in-units",
+            "D",
+            864.3474641184164,
+            34573.89856473666,
+        ),
+        ("oscillators/food-chain", "p", 0.01, 1.0),
+    ] {
+        let text = format!(
+            "branch orbits --system tests/data/{file}.toml --along {along} --from {from} --to {to}"
+        );
+        let found = points(&text, &[along]);
+        assert!(found.len() > 2, "{found:?}");
+    }
+}

@@ -3,6 +3,7 @@
 use super::bialternate::{bialternate, lyapunov, rounding_of};
 use super::generic::{FieldEquilibria, FoundEquilibrium};
 use super::generic_crossing::{BranchPoint, branch_point};
+use super::generic_curve_problem::sign;
 use super::multiple::MultiplePoint;
 use super::unexplained::{crossings, unstable};
 use crate::bifurcation::Label;
@@ -17,14 +18,6 @@ use std::ops::ControlFlow;
 /// system or the slope of a branch at one parameter, rounding has signs that mean nothing.
 fn certain(x: f64, rounding: f64) -> f64 {
     if x.abs() < rounding { 0.0 } else { x }
-}
-
-/// The product of all sums of two eigenvalues.
-fn sums(jacobian: &Matrix) -> f64 {
-    /// Units in the last place of the entries that are rounding.
-    const UNITS: f64 = 32.0;
-    let product = |jacobian: &Matrix| bialternate(jacobian).determinant();
-    certain(product(jacobian), rounding_of(jacobian, UNITS, product))
 }
 
 /// The test functions' order.
@@ -87,6 +80,24 @@ impl EquilibriumObserver<'_, '_> {
             }
         }
         singular_values(rows, [false, false]).is_some_and(|of| of.singular_values.min() < ZERO)
+    }
+
+    /// The product of all sums of two eigenvalues.
+    fn sums(&self, y: &Vector, p: f64) -> f64 {
+        /// Units in the last place that are rounding, of the entries and of the state: what a sum of entries cancels the entries' own rounding does
+        /// not show.
+        const UNITS: f64 = 32.0;
+        const TRIED: usize = 3;
+        let product = |jacobian: &Matrix| bialternate(jacobian).determinant();
+        let jacobian = self.family.jacobian(y, p);
+        let here = product(&jacobian);
+        let moved = (0..TRIED).map(|time| {
+            let off = |i: usize| 1.0 + sign(i, time) * UNITS * f64::EPSILON;
+            let beside = Vector::from_fn(y.len(), |i, _| y[i] * off(i));
+            (product(&self.family.jacobian(&beside, p)) - here).abs()
+        });
+        let of_state = moved.fold(0.0, f64::max);
+        certain(here, rounding_of(&jacobian, UNITS, product) + of_state)
     }
 
     /// Its sign changes at branch points, and where a step has come onto another branch.
@@ -294,7 +305,7 @@ impl CurveObserver for EquilibriumObserver<'_, '_> {
         let mut tests = vec![
             certain(slope(point), SLOPE),
             self.side(point),
-            sums(&self.family.jacobian(y, p)),
+            self.sums(y, p),
         ];
         tests.extend(self.inside(y));
         Ok(tests)

@@ -162,6 +162,8 @@ pub enum GeneralSolution {
         shooting: ShootingNodes,
         /// ln |mu| of its nontrivial multipliers, the largest first.
         log_multipliers: Vec<f64>,
+        /// Below this the largest is none that decides.
+        neutral: f64,
     },
 }
 
@@ -326,21 +328,23 @@ impl GeneralPoint {
 
     /// Stability.
     pub fn verdict(&self) -> Verdict {
-        /// What rounding and the continuation's accuracy leave of what is zero: of eigenvalues against the largest, of orbits of ln |mu|.
-        const NEUTRAL: (f64, f64) = (1e-12, 1e-6);
+        /// What rounding leaves of an eigenvalue that is zero, against the largest.
+        const NEUTRAL: f64 = 1e-12;
         let (largest, neutral) = match &self.solution {
             GeneralSolution::Equilibrium { eigenvalues, .. } => {
                 let most = eigenvalues.iter().map(|z| z.norm()).fold(0.0, f64::max);
                 (
                     eigenvalues.first().map_or(f64::NAN, |z| z.re),
-                    NEUTRAL.0 * most,
+                    NEUTRAL * most,
                 )
             }
             GeneralSolution::Orbit {
-                log_multipliers, ..
+                log_multipliers,
+                neutral,
+                ..
             } => (
                 log_multipliers.first().copied().unwrap_or(f64::NAN),
-                NEUTRAL.1,
+                *neutral,
             ),
         };
         let within = self.within.iter().map(|within| within.ln_abs.value);

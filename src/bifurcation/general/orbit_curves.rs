@@ -352,6 +352,7 @@ impl<'a> OrbitCurves<'_, 'a> {
                 let solution = GeneralSolution::Orbit {
                     shooting,
                     log_multipliers,
+                    neutral: 0.0,
                 };
                 found.push(GeneralPoint { solution, ..point });
             }

@@ -7,6 +7,9 @@ use crate::number::Uncertain;
 use crate::orbit::{ParametrisedField, Regular, TestFunction, WatchedFunction};
 
 /// An orbit as a point, without its parameters.
+/// What the accuracy of a continuation leaves of ln |mu| that is zero.
+pub(super) const NEUTRAL: f64 = 1e-6;
+
 pub(super) fn orbit_point(number: usize, orbit: &Regular, label: Option<Label>) -> GeneralPoint {
     let shooting = orbit.site.shooting.clone();
     GeneralPoint {
@@ -17,6 +20,7 @@ pub(super) fn orbit_point(number: usize, orbit: &Regular, label: Option<Label>) 
             orbit.site.at,
             GeneralSolution::Orbit {
                 log_multipliers: orbit.log_multipliers(),
+                neutral: NEUTRAL,
                 shooting,
             },
         )

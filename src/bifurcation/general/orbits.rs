@@ -11,11 +11,13 @@ use super::{
 };
 use crate::bifurcation::Label;
 use crate::bifurcation::orbits::{ARC, LONGEST, ROUGH, WORK};
+use crate::equilibrium::Verdict;
 use crate::error::Result;
 use crate::orbit::{
     Condition, ContinuationPoint, Corrector, Goal, Palc, PalcSettings, ParametrisedField, Regular,
-    SmallOrbits, Switch,
+    SmallOrbits, Switch, TestFunction,
 };
+use std::f64::consts::PI;
 use std::ops::ControlFlow::Continue;
 
 /// The first step onto a branch that bifurcates.
@@ -303,8 +305,36 @@ impl<'b, 'a> OrbitBranches<'b, 'a> {
         (a.min(b)..=a.max(b)).contains(&x)
     }
 
+    /// An orbit beside a bifurcation in its last digits, and what its largest multiplier is known to; `None` where that is not known.
+    fn sharper(&self, number: usize, orbit: &Regular) -> Option<GeneralPoint> {
+        /// What steps may err by, and standard deviations of what is noise.
+        const FINE: f64 = 1e-15;
+        const DEVIATIONS: f64 = 5.0;
+        let mut fine = Corrector::new(self.branch.system.family, FINE).ok()?;
+        // Across the branch: beside a Hopf point it may be all but vertical.
+        let held = Condition::Plane(orbit.along.first()?, &orbit.site);
+        let site = orbit.site.clone();
+        let sharp = fine.correct(site, &[FREE], &[held], Goal::SHARP).ok()?;
+        let largest = *sharp.multipliers()?.first()?;
+        let condition = match largest.arg.abs() {
+            0.0 => TestFunction::Fold,
+            PI => TestFunction::Doubling,
+            _ => TestFunction::Torus,
+        };
+        let noise = fine.noise_of(condition, &sharp, &[FREE], held)?;
+        let part = DEVIATIONS * noise / condition.of(&sharp.spectrum).abs();
+        let mut point = orbit_point(number, &sharp, None);
+        if let GeneralSolution::Orbit { neutral, .. } = &mut point.solution {
+            *neutral = part * largest.ln_abs.abs();
+        }
+        Some(point)
+    }
+
     pub fn row(&self, number: usize, orbit: &Regular, label: Option<Label>) -> GeneralPoint {
-        let point = orbit_point(number, orbit, label);
+        let mut point = orbit_point(number, orbit, label);
+        if label.is_none() && point.verdict() == Verdict::Undecided {
+            point = self.sharper(number, orbit).unwrap_or(point);
+        }
         point.placed(self.branch.system.family, [f64::INFINITY, 0.0])
     }
 }
