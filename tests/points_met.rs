@@ -180,3 +180,47 @@ fn orbits_beside_a_bifurcation_are_decided() {
         assert!(found.len() > 2, "{found:?}");
     }
 }
+
+/// Of an odd force the quadratic coefficient is zero where the state is, to its last digits, and so are all terms of it; and the equation of the force has no
+/// derivatives there at all. Of Lorenz's equations the terms that count are.
+#[test]
+fn symmetric_systems_have_one_pitchfork() {
+    for (system, code) in [
+        (
+            "tests/data/cases/duffing-damped.toml --along k --from -2 --to 2",
+            0,
+        ),
+        (
+            "tests/data/cases/duffing-undamped.toml --along k --from -2 --to 2",
+            3,
+        ),
+        ("lorenz --along r --from 0.5 --to 30", 0),
+    ] {
+        let text = format!("branch equilibria --system {system}");
+        let ended = command::twinslip(&text);
+        assert_eq!(ended.code, code, "{}", ended.err);
+        let told = |word: &str| ended.err.lines().filter(|line| line.contains(word)).count();
+        // On either branch.
+        assert_eq!(
+            [told("pitchfork"), told("  BP  "), told("  LP  ")],
+            [2, 2, 0],
+            "{}",
+            ended.err
+        );
+    }
+}
+
+/// l = x^3: at l = 0 the branch has the slope of a fold, and goes on.
+#[test]
+fn a_bend_without_a_turn_is_no_fold() {
+    let file = "tests/data/cases/hysteresis.toml";
+    let text = format!("branch equilibria --system {file} --along l --from -1 --to 1");
+    let found = points(&text, &["l"]);
+    assert_eq!(labels(&found), ["EP", "HB", "HB", "EP"], "{found:?}");
+    // l = x^3 where 1 - 3 x^2 = 0.1
+    let known = 0.3_f64.powf(1.5);
+    for (point, sign) in [(&found[1], -1.0), (&found[2], 1.0)] {
+        let [l, off] = point.1[0];
+        assert!((l - sign * known).abs() <= off, "{found:?}");
+    }
+}

@@ -118,7 +118,7 @@ fn certain(family: &FieldEquilibria<'_>, u: &Vector) -> Option<BranchPoint> {
 }
 
 fn crossing(family: &FieldEquilibria<'_>, u: &Vector) -> Option<BranchCrossing> {
-    /// Of the terms whose sum the coefficient is: what is left of zero, and what is not zero.
+    /// Of the curvatures whose part along psi the coefficient is, there and a unit of the motion aside: what is left of zero, and what is not zero.
     const ZERO: f64 = 1e-9;
     const NOT_ZERO: f64 = 1e-6;
     let n = (u.len() - 2) / 2;
@@ -129,14 +129,22 @@ fn crossing(family: &FieldEquilibria<'_>, u: &Vector) -> Option<BranchCrossing> 
     );
     let phi = null_vector(family.exact(&y, p).jacobian[0].clone())?;
     let part = |i: usize| Vector::from_fn(n, |k, _| if k == i { phi[i] } else { 0.0 });
-    let (mut sum, mut size) = (0.0, 0.0);
-    for i in 0..n {
-        for j in 0..n {
-            let curvature = family.second(&y, p, (&part(i), &part(j)));
-            sum += psi.dot(&curvature);
-            size += psi.abs().dot(&curvature.abs());
+    let at = |y: &Vector| {
+        let (mut sum, mut size) = (0.0, 0.0);
+        for i in 0..n {
+            for j in 0..n {
+                let curvature = family.second(y, p, (&part(i), &part(j)));
+                sum += psi.dot(&curvature);
+                size += curvature.norm();
+            }
         }
-    }
+        (sum, size)
+    };
+    // Of an odd function these are zero with the coefficient.
+    let (sum, here) = at(&y);
+    let aside = [at(&(&y + &phi)).1, at(&(&y - &phi)).1];
+    let aside = aside.into_iter().filter(|size| size.is_finite());
+    let size = aside.fold(here, f64::max);
     Some(match sum.abs() {
         x if x <= ZERO * size => BranchCrossing::Pitchfork,
         x if x > NOT_ZERO * size => BranchCrossing::Transcritical,

@@ -32,6 +32,8 @@ pub(super) struct EquilibriumObserver<'a, 'b> {
     longest: f64,
     /// The largest norm of the Jacobian so far.
     norm: f64,
+    /// Of each equation the largest norm of its derivatives in state and parameter so far.
+    longest_rows: Vector,
     /// A multiple branch point to which the branch leads, and whether it turns back there.
     ahead: Option<(MultiplePoint, bool)>,
     /// [`slope`] at the last point.
@@ -57,6 +59,7 @@ impl<'a, 'b> EquilibriumObserver<'a, 'b> {
             jumped: false,
             longest,
             norm: 0.0,
+            longest_rows: Vector::zeros(0),
             ahead: None,
             slope: f64::INFINITY,
             fallen: None,
@@ -70,13 +73,18 @@ impl<'a, 'b> EquilibriumObserver<'a, 'b> {
 impl EquilibriumObserver<'_, '_> {
     /// Whether the derivatives in state and parameter together lose a rank: at a branch point.
     fn crosses(&self, y: &Vector, p: f64) -> bool {
+        /// Of its length elsewhere on the branch, what is left of a row that is zero.
+        const VANISHED: f64 = 1e-8;
         /// What is left of a singular value that is zero, of rows of length 1.
         const ZERO: f64 = 1e-5;
         let mut rows = self.family.extended(y, p);
-        for mut row in rows.row_iter_mut() {
+        for (i, mut row) in rows.row_iter_mut().enumerate() {
+            let longest = self.longest_rows.get(i).copied().unwrap_or(0.0);
             let length = row.norm();
-            if length > 0.0 {
+            if length > VANISHED * longest {
                 row /= length;
+            } else if longest > 0.0 {
+                row /= longest;
             }
         }
         singular_values(rows, [false, false]).is_some_and(|of| of.singular_values.min() < ZERO)
@@ -98,6 +106,50 @@ impl EquilibriumObserver<'_, '_> {
         });
         let of_state = moved.fold(0.0, f64::max);
         certain(here, rounding_of(&jacobian, UNITS, product) + of_state)
+    }
+
+    /// Whether the parameter is on one side of its value here, before and behind: where a branch bends but goes on, its slope is zero too. True where
+    /// nothing can be told.
+    fn turns(&self, point: &CurvePoint) -> bool {
+        /// Of the longest step: two folds may be near each other.
+        const ASIDE: [f64; 3] = [0.1, 0.01, 0.001];
+        const ROUNDING: f64 = 64.0 * f64::EPSILON;
+        let least = ROUNDING * (1.0 + point.lambda.abs());
+        let mut told = false;
+        for aside in ASIDE {
+            let distance = aside * self.longest;
+            let sides = [-distance, distance].map(|s| self.beside(point, s));
+            let [Some(before), Some(behind)] = sides else {
+                continue;
+            };
+            let [a, b] = [before, behind].map(|p| p - point.lambda);
+            if a.abs() > least && b.abs() > least {
+                if a * b > 0.0 {
+                    return true;
+                }
+                told = true;
+            }
+        }
+        !told
+    }
+
+    /// The parameter at this distance along the tangent.
+    fn beside(&self, point: &CurvePoint, distance: f64) -> Option<f64> {
+        const ITERATIONS: usize = 8;
+        let here = point.u.push(point.lambda);
+        let n = point.u.len();
+        let mut x = &here + &point.tangent * distance;
+        let mut last = f64::INFINITY;
+        for _ in 0..ITERATIONS {
+            let (y, p) = (x.rows(0, n).into_owned(), x[n]);
+            let off = distance - point.tangent.dot(&(&x - &here));
+            let right = (-self.family.field(p).f(&y)).push(off);
+            let matrix = self.family.bordered(&y, p, &point.tangent);
+            let step = matrix.lu().solve(&right)?;
+            x += &step;
+            last = step.amax();
+        }
+        (last < f64::EPSILON.sqrt() * distance.abs()).then_some(x[n])
     }
 
     /// Its sign changes at branch points, and where a step has come onto another branch.
@@ -233,6 +285,10 @@ impl EquilibriumObserver<'_, '_> {
         let here = point.u.push(point.lambda);
         let norm = self.family.jacobian(&point.u, point.lambda).norm();
         self.norm = self.norm.max(norm);
+        let rows = self.family.extended(&point.u, point.lambda);
+        let longest = |i: usize| self.longest_rows.get(i).copied().unwrap_or(0.0);
+        let longest = Vector::from_fn(rows.nrows(), |i, _| rows.row(i).norm().max(longest(i)));
+        self.longest_rows = longest;
         self.ahead = self.look_ahead(point);
         let longest = self.longest;
         let comes = |(ahead, turns): &mut (MultiplePoint, bool)| {
@@ -337,7 +393,7 @@ impl CurveObserver for EquilibriumObserver<'_, '_> {
         }
         match mark {
             // Where another branch crosses, a turn of this one is no fold; nor is a slope that falls to its rounding, as on the way to infinity.
-            PointKind::Zero(0) if self.crosses(y, p) || self.slope < FLAT => {
+            PointKind::Zero(0) if self.crosses(y, p) || self.slope < FLAT || !self.turns(point) => {
                 return ControlFlow::Continue(());
             }
             PointKind::Zero(1) if self.is_ahead(point) => return ControlFlow::Continue(()),
