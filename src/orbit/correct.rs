@@ -8,6 +8,7 @@
 use super::arc::Tracer;
 use super::continuation_point::{ContinuationPoint, TangentVector};
 use super::family::ParametrisedField;
+use super::gradients::{carried, test_function};
 use super::linear::Linear;
 use super::multipliers::eigenvalues_of;
 use super::periodic_schur::LogEigenvalue;
@@ -109,8 +110,6 @@ impl Goal {
 
 /// Corrections below this that have ceased to shrink are the flow's own noise.
 const NOISE: f64 = 1e-8;
-/// The step by which test functions are differentiated.
-const STEP: f64 = 1e-6;
 /// Indicators that are farther from zero than this ask for them too.
 const NEAR: f64 = 1.0;
 /// What a relative change of an arc's duration counts, where steps are chosen: the shortest arcs change by most.
@@ -437,128 +436,12 @@ impl<'a> Corrector<'a> {
             linear: Shared::new(linear),
         })
     }
-
-    /// The gradients of all test functions among the conditions, in the directions in which the orbit can move.
-    fn gradients(
-        &mut self,
-        site: &ContinuationPoint,
-        linear: &Linear,
-        along: &[TangentVector],
-        spectrum: &Spectrum,
-        conditions: &[Condition<'_>],
-    ) -> Option<Vec<TangentVector>> {
-        let test_functions: Vec<TestFunction> =
-            conditions.iter().filter_map(test_function).collect();
-        if test_functions.is_empty() {
-            return Some(Vec::new());
-        }
-        let mut sums: Vec<Option<TangentVector>> = vec![None; test_functions.len()];
-        for direction in along {
-            let change = self.change(site, linear, direction, spectrum)?;
-            for (sum, test_function) in sums.iter_mut().zip(&test_functions) {
-                let slope = test_function.change_along(spectrum, &change);
-                let part = direction.clone().scaled(slope);
-                *sum = Some(match sum.take() {
-                    None => part,
-                    Some(sum) => sum.plus(1.0, &part),
-                });
-            }
-        }
-        sums.into_iter().collect()
-    }
-
-    /// What closing the orbit will add to the test functions among the conditions. Where the gaps are small that is for the next
-    /// iteration to see.
-    fn by_closing(
-        &mut self,
-        site: &ContinuationPoint,
-        linear: &Linear,
-        closing: &TangentVector,
-        spectrum: &Spectrum,
-        conditions: &[Condition<'_>],
-    ) -> Option<Vec<f64>> {
-        /// Smaller closings are not looked at.
-        const SMALL: f64 = 1e-7;
-        let test_functions: Vec<TestFunction> =
-            conditions.iter().filter_map(test_function).collect();
-        let length = closing.dot(closing).sqrt();
-        let (size, stretch) = site.size(closing);
-        if test_functions.is_empty() || size.max(stretch) < SMALL || length == 0.0 {
-            return Some(vec![0.0; test_functions.len()]);
-        }
-        let direction = closing.clone().scaled(1.0 / length);
-        let change = self.change(site, linear, &direction, spectrum)?;
-        let of = |i: &TestFunction| length * i.change_along(spectrum, &change);
-        Some(test_functions.iter().map(of).collect())
-    }
-
-    /// What a small tangent vector of an orbit changes its spectrum by.
-    pub(super) fn by_tangent(
-        &mut self,
-        orbit: &Regular,
-        tangent: &TangentVector,
-    ) -> Option<Spectrum> {
-        let length = tangent.dot(tangent).sqrt();
-        let direction = tangent.clone().normalised()?;
-        let slope = self.slope(orbit, &direction)?;
-        Some(Spectrum {
-            trace: length * slope.trace,
-            volume: length * slope.volume,
-            across: length * slope.across,
-            products: slope.products.map(|products| products.scaled(length)),
-            ..slope
-        })
-    }
-
-    /// How the spectrum of an orbit changes in a direction.
-    pub fn slope(&mut self, orbit: &Regular, direction: &TangentVector) -> Option<Spectrum> {
-        self.change(&orbit.site, &orbit.linear, direction, &orbit.spectrum)
-    }
-
-    /// How the spectrum changes in this direction.
-    fn change(
-        &mut self,
-        site: &ContinuationPoint,
-        linear: &Linear,
-        direction: &TangentVector,
-        spectrum: &Spectrum,
-    ) -> Option<Spectrum> {
-        let beside = site.moved(direction, STEP);
-        let field = self.family.field(beside.at);
-        let moved = linear
-            .beside(&mut self.tracer, &field, &beside.shooting, &[])
-            .ok()?;
-        Some(Spectrum::change(linear, spectrum, &moved, STEP))
-    }
 }
 
 /// Whether all test functions among the conditions are test functions here.
 fn checked(conditions: &[Condition<'_>], dimension: usize) -> Result<()> {
     let mut test_functions = conditions.iter().filter_map(test_function);
     test_functions.try_for_each(|one| one.checked(dimension))
-}
-
-fn test_function(condition: &Condition<'_>) -> Option<TestFunction> {
-    match condition {
-        Condition::TestFunction(test_function) => Some(*test_function),
-        _ => None,
-    }
-}
-
-/// A gradient in other planes: its product with each of the directions there, which `before` are the same in the planes of the gradient and of
-/// these directions `along`.
-fn carried(
-    gradient: &TangentVector,
-    (along, before): (&[TangentVector], &[TangentVector]),
-    turned: &[TangentVector],
-) -> Option<TangentVector> {
-    let slope = |direction: &TangentVector| -> f64 {
-        let parts = along.iter();
-        parts.map(|a| gradient.dot(a) * a.dot(direction)).sum()
-    };
-    let parts = turned.iter().zip(before);
-    let parts = parts.map(|(direction, before)| direction.clone().scaled(slope(before)));
-    parts.reduce(|sum, part| sum.plus(1.0, &part))
 }
 
 /// What is known of the test functions among the conditions.

@@ -15,6 +15,7 @@ mod find_from;
 mod find_unequal;
 pub(crate) mod floquet;
 mod going_on;
+mod gradients;
 mod hopf;
 mod interface_system;
 mod jet;

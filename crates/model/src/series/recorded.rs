@@ -63,23 +63,26 @@ impl<'a> Recording<'a> {
     }
 
     /// A solution of these formulas that is done with, else a new one.
-    fn reused(self, make: for<'b> fn(Anew<'b>, Kind) -> Box<dyn Trajectory + 'b>) -> Reused<'a> {
-        let idle = self.formulas.as_ref().and_then(Formulas::idle);
-        if let Some(idle) = idle {
+    fn reused(
+        mut self,
+        make: for<'b> fn(Anew<'b>, Kind) -> Box<dyn Trajectory + 'b>,
+    ) -> Reused<'a> {
+        let formulas = self.formulas.take();
+        if let Some(idle) = formulas.as_ref().and_then(Formulas::idle) {
             return idle;
         }
-        let kind = (self.slip_rates, self.free, self.symmetric);
-        let program = (self.record)(&vec![1.0; self.variables]);
+        let ((program, record), kind) = self.anew();
         if program.branches {
-            return Reused::Once(make((program, Some(self.record)), kind));
+            return Reused::Once(make((program, record), kind));
         }
         let made = make((program, None), kind);
-        match &self.formulas {
+        match &formulas {
             Some(formulas) => formulas.kept(made),
             None => Reused::Once(made),
         }
     }
 
+    /// The program, what records it anew, and what it is of.
     fn anew(self) -> (Anew<'a>, Kind) {
         let kind = (self.slip_rates, self.free, self.symmetric);
         let program = (self.record)(&vec![1.0; self.variables]);
