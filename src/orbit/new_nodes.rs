@@ -36,10 +36,11 @@ impl OrbitCurve<'_, '_> {
     }
 
     fn spread(&self) -> Spread {
-        match self.settings.test_function {
+        let spread = match self.settings.test_function {
             None => Spread::BRANCH,
             Some(_) => Spread::CURVE,
-        }
+        };
+        spread.beside_jumps(self.corrector.family.is_any_system())
     }
 
     /// The orbit with its arcs cut anew.

@@ -1,7 +1,7 @@
-//! Where the nodes of an orbit stand that is followed along a curve: spread over it by how far it goes, and away from its corners.
+//! Where the nodes of an orbit stand that is followed along a curve: spread over it by how far it goes, and away from its corners and its jumps.
 //!
 //! At a corner, where a fast motion begins or ends, the plane across the flow sees the neighbouring orbits under any angle: a small
-//! displacement there is no small one of the orbit.
+//! displacement there is no small one of the orbit. The corner itself moves when the parameters change, and comes to a node next to it.
 
 use super::arc::Tracer;
 use super::shooting_nodes::ShootingNodes;
@@ -23,6 +23,8 @@ pub(super) struct Spread {
     way: f64,
     /// What ln |volume| changes by on an arc, from so many dimensions on.
     volume: (f64, usize),
+    /// Whether jumps may be as fast as can be: nodes stand aside of them and of their corners, or are left out.
+    jumps: bool,
 }
 
 impl Spread {
@@ -31,12 +33,24 @@ impl Spread {
     pub const BRANCH: Spread = Spread {
         way: 0.25,
         volume: (4.0, 4),
+        jumps: false,
     };
     /// Along a curve of bifurcations, whose condition is a function of the maps.
     pub const CURVE: Spread = Spread {
         way: 0.1,
         volume: (2.0, 2),
+        jumps: false,
     };
+
+    /// The same where jumps may be as fast as can be.
+    pub fn beside_jumps(self, jumps: bool) -> Self {
+        Spread { jumps, ..self }
+    }
+
+    /// In extents per period.
+    fn fastest(&self) -> f64 {
+        if self.jumps { FASTEST } else { f64::INFINITY }
+    }
 
     /// How many arcs a piece is worth.
     fn arcs(&self, dimension: usize, way: f64, volume: f64) -> f64 {
@@ -50,6 +64,10 @@ impl Spread {
 const GROWTH: f64 = 4.0;
 /// A curve that turns on less than this way has a corner.
 const CORNER: f64 = 0.1;
+/// In extents per period. Along faster motions rounding of the time is seen in the state: their way counts no more than at this speed.
+const FASTEST: f64 = 1e6;
+/// A node is left out rather than to stand so many times nearer to a corner, or where the motion is so many times faster.
+const NO_PLACE: f64 = 30.0;
 /// A variable that moves by less than this part of what the liveliest does, both in the units of the motion, may move by any factor more.
 const STILL_BESIDE: f64 = 1e-4;
 /// How far a node may stand from where it would by the measure alone, in parts of an arc.
@@ -70,18 +88,32 @@ struct TracedStep {
 struct Extents {
     states: Vector,
     period: f64,
+    /// In these units: the way along faster motions counts no more than at this speed.
+    fastest: f64,
 }
 
 impl Extents {
-    fn of<'a>(points: impl Iterator<Item = &'a Vector> + Clone, period: f64) -> Self {
+    fn of<'a>(points: impl Iterator<Item = &'a Vector> + Clone, period: f64, fastest: f64) -> Self {
         Extents {
             states: extents(points),
             period: period.abs(),
+            fastest,
         }
     }
 
     fn way(&self, from: &Vector, to: &Vector, length: f64) -> f64 {
-        (to - from).component_div(&self.states).amax() + length.abs() / self.period
+        let time = length.abs() / self.period;
+        self.moved(to - from).min(self.fastest * time) + time
+    }
+
+    /// By the variable that moves most, in parts of its extent.
+    fn moved(&self, way: Vector) -> f64 {
+        way.component_div(&self.states).amax()
+    }
+
+    /// In extents per period.
+    fn speed(&self, field: &AnyField<'_>, x: &Vector) -> f64 {
+        self.moved(field.f(x)) * self.period
     }
 
     /// The way on which the curve turns here: its radius of curvature, with time as one more coordinate.
@@ -94,6 +126,32 @@ impl Extents {
         // What of the change is across; time itself does not change.
         let across = (change - &flow * along).norm_squared() + (along / self.period).powi(2);
         speed / across.sqrt()
+    }
+
+    fn radii(&self, field: &AnyField<'_>, steps: &[TracedStep]) -> Vec<f64> {
+        let radius = |step: &TracedStep| self.radius(field, &step.from);
+        steps.iter().map(radius).collect()
+    }
+
+    /// How far from a corner each of the steps begins: the least sum of the way to a place and the radius there.
+    fn clearances(&self, field: &AnyField<'_>, steps: &[TracedStep]) -> Vec<f64> {
+        let count = steps.len();
+        let next = steps.iter().cycle().skip(1);
+        let ways = steps.iter().zip(next).map(|(step, next)| {
+            self.moved(&next.from - &step.from) + step.length.abs() / self.period
+        });
+        let ways: Vec<f64> = ways.collect();
+        let mut all = self.radii(field, steps);
+        // Once around and once more, in both senses.
+        for k in 0..2 * count {
+            let (here, next) = (k % count, (k + 1) % count);
+            all[next] = all[next].min(all[here] + ways[here]);
+        }
+        for k in (0..2 * count).rev() {
+            let (here, next) = (k % count, (k + 1) % count);
+            all[here] = all[here].min(all[next] + ways[here]);
+        }
+        all
     }
 }
 
@@ -110,7 +168,11 @@ impl ShootingNodes {
     ) -> Result<(Self, f64)> {
         let steps = self.traced(tracer, field)?;
         let period = self.period();
-        let extents = Extents::of(steps.iter().map(|step| &step.from), period);
+        let extents = Extents::of(
+            steps.iter().map(|step| &step.from),
+            period,
+            spread.fastest(),
+        );
         let next = steps.iter().cycle().skip(1);
         let measures = steps.iter().zip(next).map(|(step, next)| {
             let way = extents.way(&step.from, &next.from, step.length);
@@ -131,23 +193,32 @@ impl ShootingNodes {
         }
         let count = (all.ceil() as usize).clamp(NODES.0, NODES.1);
         let each = all / count as f64;
-        let mut begins = std::iter::once(0.0).chain(ends).zip(&steps).peekable();
+        let clearances = match spread.jumps {
+            true => extents.clearances(field, &steps),
+            false => extents.radii(field, &steps),
+        };
+        let placed = steps.iter().zip(&clearances);
+        let mut begins = std::iter::once(0.0).chain(ends).zip(placed).peekable();
         let (mut nodes, mut times, mut places) = (Vec::new(), Vec::new(), Vec::new());
         for k in 0..count {
             let middle = (k as f64 + 0.5) * each;
             let mut best: Option<(f64, f64, &TracedStep)> = None;
-            while let Some((at, step)) = begins.next_if(|(at, _)| *at < middle + ASIDE * each) {
+            while let Some((at, (step, clearance))) =
+                begins.next_if(|(at, _)| *at < middle + ASIDE * each)
+            {
                 let aside = (at - middle).abs() / each;
                 if aside > ASIDE {
                     continue;
                 }
-                let corner = (CORNER / extents.radius(field, &step.from)).max(1.0);
-                let cost = corner * (1.0 + aside * aside);
-                if best.is_none_or(|(least, ..)| cost < least) {
+                let corner = (CORNER / clearance).max(1.0);
+                let fast = (extents.speed(field, &step.from) / extents.fastest).max(1.0);
+                let cost = corner * fast * (1.0 + aside * aside);
+                let has_place = !spread.jumps || cost < NO_PLACE;
+                if has_place && best.is_none_or(|(least, ..)| cost < least) {
                     best = Some((cost, at, step));
                 }
             }
-            // A step of much measure takes the place of several arcs.
+            // A step of much measure takes the place of several arcs; and some have no good place.
             if let Some((_, at, step)) = best {
                 nodes.push(step.from.clone());
                 times.push(step.begin);
@@ -238,7 +309,7 @@ impl ShootingNodes {
         /// The measure of an arc over the mean; and the part of a corner's way on which the curve may turn at a node.
         const WORST: f64 = 3.0;
         const SHARP: f64 = 0.1;
-        let extents = Extents::of(self.nodes.iter(), self.period());
+        let extents = Extents::of(self.nodes.iter(), self.period(), spread.fastest());
         let next = self.nodes.iter().cycle().skip(1);
         let arcs = self
             .nodes
