@@ -387,8 +387,8 @@ WRONG = [
     ("f: the number nan can't stand", lambda x, p: [math.nan, 0]),
     ("beyond the range of doubles", lambda x, p: [x[0] * 10**400, 0]),
     ("f: the whole exponent 2000 must be between -1024 and 1024", lambda x, p: [x[0] ** 2000, 0]),
-    ("f: it has the arguments t, x, p, but must be f(x, p)", lambda t, x, p: [0, 0]),
-    ("make time a state of its own", lambda t, x: [0, 0]),
+    ("f: it has the arguments (t, x, p, q), but must be f(x, p)", lambda t, x, p, q: [0, 0]),
+    ("(t, x), but must be f(x, p), or f(t, x, p) where rates depend", lambda t, x: [0, 0]),
     ("f: it has the arguments (x), but must be f(x, p)", lambda x: [0, 0]),
     ("f: it must be a function f(x, p), not of type int", 3),
 ]
