@@ -76,6 +76,15 @@ pub trait VectorField<const N: usize>: Send + Sync {
         false
     }
 
+    /// A state at the end of a step of this length, with the time there if that is a variable: the sum of what a method adds up in a step is
+    /// rounded, and over a million steps time would be late by more than the tolerance.
+    fn timed(&self, mut end: State<N>, begin: &State<N>, h: f64) -> State<N> {
+        if self.last_is_time() {
+            end[N - 1] = begin[N - 1] + h;
+        }
+        end
+    }
+
     /// What a step may err in every variable beside its relative error: `atol`, or next to nothing where it is a factor of its own rate; anything
     /// where it is time.
     fn absolute_tolerances(&self, atol: f64) -> State<N> {
