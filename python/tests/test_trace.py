@@ -69,7 +69,13 @@ def two_blocks(x: Any, p: Any) -> Any:
     return np.concatenate([p.nu - v, pull - np.array([1, p.beta]) * friction])
 
 
+def duffing(t: Any, x: Any, p: Any) -> Any:
+    force = p.gamma * np.cos(p.omega * t)
+    return x["v"], x["x"] - x["x"] ** 3 - p.delta * x["v"] + force
+
+
 SHIPPED = {
+    "duffing": duffing,
     "lorenz": lorenz,
     "roessler": roessler,
     "van-der-pol": van_der_pol,
@@ -461,6 +467,14 @@ ARGUMENTS = [
 @pytest.mark.parametrize(("words", "options"), ARGUMENTS)
 def test_arguments_that_cannot_be_are_named(words: str, options: dict[str, Any]) -> None:
     refused(ValueError, words, lambda x, p: 0 * x, **{"states": ["x", "y"], **options})
+
+
+def test_no_state_is_called_t_beside_time() -> None:
+    def f(t: Any, x: Any, p: Any) -> Any:
+        return [np.cos(t)]
+
+    refused(ValueError, "states: none can be called 't' where f takes the time", f, ["t"])
+    refused(ValueError, "parameters: none can be called 't'", f, ["x"], {"t": 1.0})
 
 
 def test_a_part_of_the_start_is_enough() -> None:

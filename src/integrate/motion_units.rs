@@ -411,7 +411,11 @@ fn fastest(jacobian: &Matrix) -> f64 {
 
 /// The size of every variable at the start; where it is 0, how far it moves in this time, at first or by what others then do to it. No number of
 /// which that is known is 0 or none at all.
-fn sizes_at_start((field, jacobian): (&AnyField<'_>, &Matrix), start: &Vector, time: f64) -> Vector {
+fn sizes_at_start(
+    (field, jacobian): (&AnyField<'_>, &Matrix),
+    start: &Vector,
+    time: f64,
+) -> Vector {
     let mut sizes = start.map(|x| round(x.abs()));
     let mut way = field.f(start) * time;
     for _ in 0..start.len() {

@@ -86,7 +86,7 @@ impl TextModel {
         };
         let (line, column) = place;
         Err(Error::Input(format!(
-            "{file}:{line}:{column}: {formula} names {TIME}, the time: of systems that do, there are initial value problems alone, by `integrate`, and by solve_ivp in Python"
+            "{file}:{line}:{column}: {formula} names {TIME}, the time, and only `integrate`, and solve_ivp in Python, take such a system"
         )))
     }
 
