@@ -152,8 +152,9 @@ def test_a_text_has_the_values_of_its_function(name: str, data: st.DataObject) -
     values = data.draw(
         st.lists(NUMBERS, min_size=len(of_file.states), max_size=len(of_file.states))
     )
+    t = data.draw(NUMBERS)
     np.testing.assert_allclose(
-        of_function.rates(values), of_file.rates(values), rtol=1e-13, atol=1e-13
+        of_function.rates(values, t), of_file.rates(values, t), rtol=1e-13, atol=1e-13
     )
 
 
