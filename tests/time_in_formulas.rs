@@ -194,7 +194,7 @@ fn many_steps_do_not_make_time_late() {
 
 #[test]
 fn results_are_the_same_in_other_units_of_time() {
-    // v and w per second or per year, the force per second squared: by a factor that is no power of two.
+    // Seconds and years, of which the ratio is no power of two.
     const YEAR: f64 = 31_556_952.0;
     for (rate, sized) in [("-a*x + g*cos(w*t)", 1.0), ("g*cos(w*t)", 1e-9)] {
         let of = |unit: f64, folder: &str| {
