@@ -10,7 +10,8 @@ use twinslip_tasks::scene::{IvpAsked, IvpEvent, IvpFormula, IvpOutcome, IvpPlan}
 type Event = IvpEvent<'static, Infallible>;
 
 fn formula(states: &str, function: &str) -> Result<IvpFormula, Error> {
-    let names: Vec<&str> = states.split(' ').collect();
+    // Time is no state.
+    let names: Vec<&str> = states.split(' ').filter(|name| *name != "t").collect();
     let quoted: Vec<String> = names.iter().map(|name| format!("{name:?}")).collect();
     let rate = |(i, name): (usize, &&str)| match i {
         0 => format!("{name} = \"{function}\"\n"),
@@ -21,9 +22,7 @@ fn formula(states: &str, function: &str) -> Result<IvpFormula, Error> {
         "name = \"event\"\nstates = [{}]\n[rates]\n{rates}",
         quoted.join(", ")
     );
-    // Time may be the last one.
-    let values = names.iter().filter(|name| **name != "t").count();
-    IvpFormula::parse(&text, values)
+    IvpFormula::parse(&text, names.len())
 }
 
 fn event(states: &str, function: &str) -> Event {

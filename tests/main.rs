@@ -131,6 +131,7 @@ mod text_laws_input;
 mod text_laws_steady;
 mod text_systems;
 mod textbook_models;
+mod time_in_formulas;
 mod transport;
 mod unequal;
 mod unequal_commands;

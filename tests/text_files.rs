@@ -60,8 +60,8 @@ fn mistakes_are_told_by_line_and_column() {
             "9:10: \"aa\" is no state, no parameter and not defined in [where]; did you mean \"a\"?",
         ),
         (
-            changed("x + a*y", "x + a*t"),
-            "9:12: \"t\" is no state: where time is needed, add a state whose rate is 1 and whose start is 0",
+            changed("x + a*y", "x + a*time"),
+            "9:12: \"time\" is no state: in formulas time is called t",
         ),
         (
             changed("x + a*y", "x + a y"),

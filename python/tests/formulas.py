@@ -45,9 +45,9 @@ class TextOfSystem:
         self.parameters: dict[str, float] = self.table.get("parameters", {})
         self.defined: dict[str, str] = self.table.get("where", {})
 
-    def rates(self, values: list[float]) -> list[float]:
-        """The rates of all states at these values."""
-        known = {**self.parameters, **dict(zip(self.states, values)), "pi": math.pi}
+    def rates(self, values: list[float], t: float = math.nan) -> list[float]:
+        """The rates of all states at these values, and at this time."""
+        known = {"t": t, "pi": math.pi, **self.parameters, **dict(zip(self.states, values))}
 
         def of_name(name: str) -> float:
             if name not in known:

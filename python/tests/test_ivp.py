@@ -656,3 +656,32 @@ def test_results_can_be_pickled_and_copied(method: str, name: str) -> None:
         assert np.array_equal(other.sol.ts, solved.sol.ts)
     alone = pickle.loads(pickle.dumps(solved.sol))
     assert np.array_equal(alone(times), solved.sol(times))
+
+
+def test_systems_may_depend_on_time() -> None:
+    def forced(t: Any, x: Any, p: Any) -> Any:
+        return [x[1], -x[0] + np.cos(p.w * t)]
+
+    def early(t: float, y: Any) -> Any:
+        return y[0] - t / 10
+
+    system = System.from_function(forced, ["x", "v"], {"w": 2.0}, start={"x": 0.0, "v": 0.0})
+    times = np.linspace(-1.0, 9.0, 21)
+    exact = (np.cos(times) - np.cos(2 * times)) / 3, (2 * np.sin(2 * times) - np.sin(times)) / 3
+    begin = [exact[0][0], exact[1][0]]
+    ours = solve_ivp(
+        system, (-1, 9), begin, t_eval=times, rtol=1e-12, dense_output=True, events=early
+    )
+    np.testing.assert_allclose(ours.y, exact, rtol=0, atol=1e-11)
+    assert ours.sol is not None and ours.t_events is not None
+    np.testing.assert_allclose(ours.sol(times), ours.y, rtol=0, atol=1e-12)
+    for t in ours.t_events[0]:
+        assert abs((np.cos(t) - np.cos(2 * t)) / 3 - t / 10) < 1e-11
+    assert len(ours.t_events[0]) >= 3
+    run = system.integrate(until=9.0, points=2, rtol=1e-12)
+    assert abs(run.final.x - exact[0][-1]) < 1e-11
+    for command in (system.equilibria, system.orbit):
+        with pytest.raises(ValueError, match="the rate of v names t, the time"):
+            command()
+    with pytest.raises(ValueError, match="names t, the time"):
+        list(system.branch("equilibria", along="w", range=(1.0, 2.0)))

@@ -69,7 +69,13 @@ def two_blocks(x: Any, p: Any) -> Any:
     return np.concatenate([p.nu - v, pull - np.array([1, p.beta]) * friction])
 
 
+def duffing(t: Any, x: Any, p: Any) -> Any:
+    force = p.gamma * np.cos(p.omega * t)
+    return x["v"], x["x"] - x["x"] ** 3 - p.delta * x["v"] + force
+
+
 SHIPPED = {
+    "duffing": duffing,
     "lorenz": lorenz,
     "roessler": roessler,
     "van-der-pol": van_der_pol,
@@ -146,8 +152,9 @@ def test_a_text_has_the_values_of_its_function(name: str, data: st.DataObject) -
     values = data.draw(
         st.lists(NUMBERS, min_size=len(of_file.states), max_size=len(of_file.states))
     )
+    t = data.draw(NUMBERS)
     np.testing.assert_allclose(
-        of_function.rates(values), of_file.rates(values), rtol=1e-13, atol=1e-13
+        of_function.rates(values, t), of_file.rates(values, t), rtol=1e-13, atol=1e-13
     )
 
 
@@ -387,8 +394,8 @@ WRONG = [
     ("f: the number nan can't stand", lambda x, p: [math.nan, 0]),
     ("beyond the range of doubles", lambda x, p: [x[0] * 10**400, 0]),
     ("f: the whole exponent 2000 must be between -1024 and 1024", lambda x, p: [x[0] ** 2000, 0]),
-    ("f: it has the arguments t, x, p, but must be f(x, p)", lambda t, x, p: [0, 0]),
-    ("make time a state of its own", lambda t, x: [0, 0]),
+    ("f: it has the arguments (t, x, p, q), but must be f(x, p)", lambda t, x, p, q: [0, 0]),
+    ("(t, x), but must be f(x, p), or f(t, x, p) where rates depend", lambda t, x: [0, 0]),
     ("f: it has the arguments (x), but must be f(x, p)", lambda x: [0, 0]),
     ("f: it must be a function f(x, p), not of type int", 3),
 ]
@@ -461,6 +468,14 @@ ARGUMENTS = [
 @pytest.mark.parametrize(("words", "options"), ARGUMENTS)
 def test_arguments_that_cannot_be_are_named(words: str, options: dict[str, Any]) -> None:
     refused(ValueError, words, lambda x, p: 0 * x, **{"states": ["x", "y"], **options})
+
+
+def test_no_state_is_called_t_beside_time() -> None:
+    def f(t: Any, x: Any, p: Any) -> Any:
+        return [np.cos(t)]
+
+    refused(ValueError, "states: none can be called 't' where f takes the time", f, ["t"])
+    refused(ValueError, "parameters: none can be called 't'", f, ["x"], {"t": 1.0})
 
 
 def test_a_part_of_the_start_is_enough() -> None:

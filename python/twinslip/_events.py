@@ -34,20 +34,18 @@ class Asked(NamedTuple):
     function: Function
     reason: Optional[str]
 
-    def given(self, values: int) -> Union[str, Callable[[float, Array], float]]:
-        """What is looked at along a run of so many values: the formula where there is one."""
-        text = None
-        if self.symbol is not None:
-            text = self.function.formula(self.symbol.place, values)
+    def given(self) -> Union[str, Callable[[float, Array], float]]:
+        """What is looked at along a run: the formula where there is one."""
+        text = None if self.symbol is None else self.function.formula(self.symbol.place)
         return self.sampled if text is None else text
 
 
 def traced_event(function: Function, asked: AskedEvent, t: float, y: Array) -> Asked:
     """The formula of an event of a function."""
-    count, units = function.count, np.array(function.units)
+    units = np.array(function.units)
 
     def sampled(time: float, inward: Array) -> float:
-        return asked.called(time, inward[:count] * units)
+        return asked.called(time, inward * units)
 
     def none(reason: Optional[str]) -> Asked:
         return Asked(sampled, None, function, reason)
@@ -59,7 +57,7 @@ def traced_event(function: Function, asked: AskedEvent, t: float, y: Array) -> A
     if symbol.known() is not None:
         # It has no zeros, or nothing else.
         return none(None)
-    if function.formula(symbol.place, count) is None:
+    if function.formula(symbol.place) is None:
         return none(f"its formula has t beside {count} values")
     if differs([function.point(t, y.tolist()).value(symbol.place)], [asked.called(t, y.copy())]):
         return none("it gives other values with numbers than with symbols")
@@ -87,7 +85,7 @@ def traced_for_system(asked: AskedEvent, more: tuple[Any, ...], count: int) -> G
         if not isinstance(error, Untraced):
             raise
         return GivenEvent(asked, asked.called)
-    text = None if symbol.known() is not None else function.formula(symbol.place, count)
+    text = None if symbol.known() is not None else function.formula(symbol.place)
     return GivenEvent(asked, asked.called if text is None else text)
 
 

@@ -15,12 +15,10 @@ from ._errors import InputError
 from ._evaluation import Point
 from ._symbols import Formulas, Symbol
 from ._text import definitions, quoted
-from ._trace import LONGEST, MOST_ENTRIES, MOST_STATES
+from ._trace import LONGEST, MOST_ENTRIES, MOST_STATES, TIME
 
 Array = npt.NDArray[np.float64]
 
-#: What time is called in formulas.
-TIME = "t"
 #: Of all traces together, as each change of a comparison makes some more.
 MOST_OPERATIONS = 200_000
 #: A formula and a number are the same up to this part of them.
@@ -161,18 +159,17 @@ class Function:
                     needed[operand] = True
         return needed[self.time.place]
 
-    def text(self, places: Sequence[int], timed: bool) -> str:
-        """The text of the system with these rates, in which time is one state more."""
-        names = (*self.names, TIME) if timed else self.names
-        if len(names) > MOST_STATES:
+    def text(self, places: Sequence[int]) -> str:
+        """The text of the system with these rates, which may name time."""
+        if self.count >= MOST_STATES and self.of_time(places):
             raise InputError(
                 f"y0 has {self.count} values, but must have 1 to {MOST_STATES - 1} where rates depend on t",
                 "y0",
             )
-        texts, defined = definitions(self.formulas, list(places), {*self.names, TIME}, MOST_ENTRIES)
-        texts += ["1"] * (len(names) - len(texts))
-        lines = ['name = "fun"', f"states = [{', '.join(map(quoted, names))}]", "[rates]"]
-        lines += [f"{name} = {quoted(text)}" for name, text in zip(names, texts)]
+        taken = {*self.names, TIME}
+        texts, defined = definitions(self.formulas, list(places), taken, MOST_ENTRIES)
+        lines = ['name = "fun"', f"states = [{', '.join(map(quoted, self.names))}]", "[rates]"]
+        lines += [f"{name} = {quoted(text)}" for name, text in zip(self.names, texts)]
         if defined:
             lines += ["[where]", *(f"{name} = {quoted(text)}" for name, text in defined)]
         text = "\n".join(lines) + "\n"
@@ -183,13 +180,12 @@ class Function:
             )
         return text
 
-    def formula(self, place: int, values: int) -> Optional[str]:
-        """The text of one function for an event of a run with so many values, of which time may be the last; None where there are too many."""
-        timed = self.of_time([place]) or values > self.count
-        if timed and self.count >= MOST_STATES:
+    def formula(self, place: int) -> Optional[str]:
+        """The text of one function for an event; None where there are too many values beside time."""
+        if self.count >= MOST_STATES and self.of_time([place]):
             return None
         names = [self.formulas.named(name).place for name in self.names[1:]]
-        return self.text([place, *names], timed)
+        return self.text([place, *names])
 
 
 def differs(formulas: Sequence[float], numbers_: Sequence[float]) -> bool:

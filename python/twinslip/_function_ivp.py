@@ -72,7 +72,7 @@ class _Run:
         self.length = abs(end - self.t)
         self.units = np.array(units)
         self.rows = Rows(len(self.asked), count)
-        self.systems: dict[tuple[int, ...], tuple[list[str], bool]] = {}
+        self.systems: dict[tuple[int, ...], list[str]] = {}
         self.checked = False
         self.events: list[Asked] = []
         self.method = self.numerics.method
@@ -158,31 +158,28 @@ class _Run:
         decays = -self.way * np.linalg.eigvals(jacobian).real
         return bool(decays.max() * self.length > _STIFF)
 
-    def _system(self, traced: Traced) -> tuple[list[str], bool]:
-        """The words of the system with these rates, and whether time is its last state."""
+    def _system(self, traced: Traced) -> list[str]:
+        """The words of the system with these rates."""
         key = tuple(traced.rates)
         if key not in self.systems:
-            timed = self.function.of_time(traced.rates)
-            system = System(system=self.function.text(traced.rates, timed))
+            system = System(system=self.function.text(traced.rates))
             numerics = self.numerics
-            words = system._solver_words(
+            self.systems[key] = system._solver_words(
                 self.method, numerics.rtol, self.atol, numerics.max_step, numerics.max_steps
             )
-            self.systems[key] = words, timed
         return self.systems[key]
 
     def _run(
         self, traced: Traced, forced: dict[int, float]
     ) -> tuple[_core.IvpRun, Optional[BaseException]]:
-        words, timed = self._system(traced)
-        start = [*(np.array(self.y) / self.units).tolist(), *([self.t] if timed else [])]
-        values = len(start)
+        words = self._system(traced)
+        start = (np.array(self.y) / self.units).tolist()
         told: list[Any] = []
         for i, (event, asked) in enumerate(zip(self.events, self.asked)):
             most = None if asked.most is None else asked.most - len(self.rows.t_events[i])
-            told.append((event.given(values), asked.way, most, None))
+            told.append((event.given(), asked.way, most, None))
         for side in traced.sides:
-            text = self.function.formula(self._bordered(side, forced), values)
+            text = self.function.formula(self._bordered(side, forced))
             if text is None:
                 raise InputError(
                     f"y0 has {len(self.y)} values, but must have one less where `fun` compares what depends on t",
@@ -226,7 +223,7 @@ class _Run:
         first = len(self.asked)
         for side, at, y in zip(sides, times[first:], values[first:]):
             if len(at) > 0:
-                y = y.reshape(-1, run.dimension)[0, : len(self.y)] * self.units
+                y = y.reshape(-1, run.dimension)[0] * self.units
                 return side, float(at[0]), y.tolist()
         return None
 
@@ -237,13 +234,13 @@ class _Run:
         if self.times is not None:
             # The rows are at other times.
             traced = self.function.traced(self.t, self.y, {})
-            words, timed = self._system(traced)
-            start = [*(np.array(self.y) / self.units).tolist(), *([self.t] if timed else [])]
+            words = self._system(traced)
+            start = (np.array(self.y) / self.units).tolist()
             again, _, _ = _core.solve_ivp(words, (self.t, self.ends[0]), start, None, [], False)
             if again is None:
                 return None
             run = again
-        values = run.y().reshape(-1, run.dimension)[-1, : len(self.y)] * self.units
+        values = run.y().reshape(-1, run.dimension)[-1] * self.units
         t, y = float(run.t()[-1]), values.tolist()
         for kinks in (self.function.kinks, True):
             self.function.kinks = kinks

@@ -26,7 +26,7 @@ class Rows:
 
     def add(self, run: _core.IvpRun, units: Array, chosen: bool) -> None:
         """One part of the run, with its rows, which begin where the last one ended, and its events."""
-        t, y = run.t(), run.y().reshape(-1, run.dimension)[:, : self.count] * units
+        t, y = run.t(), run.y().reshape(-1, run.dimension) * units
         again = 1 if self.t and not chosen else 0
         self.t.append(t[again:])
         self.y.append(y[again:])
@@ -38,7 +38,7 @@ class Rows:
         for i, (times, values, undecided) in enumerate(found):
             if i >= len(self.t_events):
                 break
-            values = values.reshape(-1, run.dimension)[:, : self.count] * units
+            values = values.reshape(-1, run.dimension) * units
             for time, value in zip(times.tolist(), values):
                 # What ends one part is not found again as the beginning of the next one.
                 last = self.t_events[i][-1] if self.t_events[i] else None

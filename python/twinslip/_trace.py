@@ -20,10 +20,12 @@ MOST_ENTRIES = 200
 #: No text is longer, in bytes, and no name.
 LONGEST = 1 << 16
 LONGEST_NAME = 200
+#: What time is called in formulas.
+TIME = "t"
 #: What stands in rows beside the states.
 _COLUMNS = {"time", "return", "period", "verdict", "residual", "point"}
 
-#: ``f(x, p)``: the rates of the states x with the parameters p.
+#: ``f(x, p)``: the rates of the states x with the parameters p; or ``f(t, x, p)``.
 RateFunction = Callable[..., Any]
 
 
@@ -84,13 +86,13 @@ def system_text(
     name: str | None = None,
     start: Mapping[str, float] | Sequence[float] | None = None,
 ) -> str:
-    """The text of the system dx/dt = f(x, p), as a file of twinslip has it.
+    """The text of the system dx/dt = f(x, p), or f(t, x, p), as a file of twinslip has it.
 
     Parameters
     ----------
     f : callable
-        ``f(x, p)`` gives the rates of all states: a sequence in their order, or a mapping by
-        their names. It is called once, with symbols: ``x[0]`` or ``x["theta"]``, ``p["mu"]`` or
+        ``f(x, p)``, or ``f(t, x, p)`` of the time t, gives the rates of all states: a sequence
+        in their order, or a mapping by their names. It is called once, with symbols: ``x[0]`` or ``x["theta"]``, ``p["mu"]`` or
         ``p.mu``. Arithmetic and numpy's functions go; a choice by the value of a symbol does not,
         nor do the functions of ``math``. A power whose exponent is no whole number, or is a
         parameter, needs a positive base.
@@ -119,7 +121,10 @@ def system_text(
     values = _checked_parameters({} if parameters is None else parameters, names)
     called = _checked_name(f, name)
     starts = _checked_start(start, names)
-    _check_arguments(f)
+    takes_time = _takes_time(f)
+    if takes_time and TIME in (*names, *values):
+        kind = "states" if TIME in names else "parameters"
+        raise ValueError(f"{kind}: none can be called {TIME!r} where f takes the time")
 
     formulas = Formulas()
     # The variables first: so they have their places in order.
@@ -128,9 +133,10 @@ def system_text(
         x[i] = formulas.named(state)
     x.names = names
     p = Parameters({parameter: formulas.named(parameter) for parameter in values})
-    rates = _checked_rates(f(x, p), names, formulas)
+    made = f(formulas.named(TIME), x, p) if takes_time else f(x, p)
+    rates = _checked_rates(made, names, formulas)
 
-    taken = {*names, *values}
+    taken = {*names, *values, TIME}
     texts, defined = definitions(formulas, [rate.place for rate in rates], taken, MOST_ENTRIES)
     tables = [
         ("parameters", [(key, number(value)) for key, value in values.items()]),
@@ -257,29 +263,25 @@ def _checked_start(
     return {state: _checked_number("start", state, value) for state, value in zip(states, values)}
 
 
-def _check_arguments(f: RateFunction) -> None:
+def _takes_time(f: RateFunction) -> bool:
+    """Whether it is ``f(t, x, p)`` and not ``f(x, p)``."""
     if not callable(f):
         raise ValueError(f"f: it must be a function f(x, p), not of type {type(f).__name__}")
     try:
         signature = inspect.signature(f)
     except (TypeError, ValueError):
-        return
+        return False
     kinds = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
     places = [one.name for one in signature.parameters.values() if one.kind in kinds]
-    of_time = places[:1] in (["t"], ["time"]) or len(places) == 3
+    takes_time = places[:1] in (["t"], ["time"])
     try:
-        signature.bind(None, None)
-        fits = True
+        signature.bind(*[None] * (3 if takes_time else 2))
+        return takes_time
     except TypeError:
-        fits = False
-    if of_time and (not fits or places[0] in ("t", "time")):
-        raise ValueError(
-            f"f: it has the arguments {', '.join(places)}, but must be f(x, p), as rates can't "
-            "depend on time itself: "
-            'make time a state of its own, such as "clock", with the rate 1 and the start 0'
-        )
-    if not fits:
-        raise ValueError(f"f: it has the arguments {signature}, but must be f(x, p)")
+        pass
+    raise ValueError(
+        f"f: it has the arguments {signature}, but must be f(x, p), or f(t, x, p) where rates depend on the time t"
+    )
 
 
 def _checked_rates(made: Any, states: tuple[str, ...], formulas: Formulas) -> list[Symbol]:

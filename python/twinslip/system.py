@@ -74,7 +74,8 @@ class System(Commands, Model):
         ----------
         function : callable
             ``function(x, p)`` returns the rates of all states in their order: x has the states, p the parameters, both by name, x by
-            number too. Arithmetic and functions of numpy make formulas of them; what the function does otherwise, such as ``if``, can't
+            number too. As ``function(t, x, p)`` it has the time t as well: such a system can be integrated, and has no equilibria,
+            orbits or branches. Arithmetic and functions of numpy make formulas of them; what the function does otherwise, such as ``if``, can't
             depend on them.
         states : sequence of str
             The names of the states.

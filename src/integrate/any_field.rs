@@ -65,11 +65,11 @@ impl<'a> AnyField<'a> {
     pub fn of_text(system: Cow<'a, TextSystem>) -> Result<Self> {
         macro_rules! by_dimension {
             ($($n:literal)*) => {
-                match system.states().len() {
+                match system.variables() {
                     $( $n => Ok(AnyField::new::<$n>(Box::new(TextField::of(system)?))), )*
                     more => {
                         let must = format!("from 1 to {}", TextSystem::LARGEST);
-                        Err(Error::parameter("the number of states", more, must))
+                        Err(Error::parameter("the number of variables", more, must))
                     }
                 }
             };

@@ -1,13 +1,15 @@
 //! The units in which a system moves by about 1: in these it is searched and followed, whatever units its formulas are in.
 //!
-//! They are measured along a run, by how far each state moves and how fast, and are powers of two: numbers come back without rounding.
+//! They are measured along a run, by how far each state moves and how fast, and are powers of two: numbers come back without rounding. Where time
+//! is a variable, the one after the states, it has the unit of time.
 
+mod forced;
 mod seen;
 
 use super::static_field::SUNKEN;
 use super::{AnyField, AnyIntegrator, AnyStep, Choice, Tolerances};
 use crate::error::{Error, Result};
-use crate::field::Vector;
+use crate::field::{Matrix, Vector};
 use crate::model::TextSystem;
 use crate::number::{Uncertain, eigenvalues};
 use seen::Seen;
@@ -112,34 +114,26 @@ impl MotionUnits {
     pub fn at_start(system: &TextSystem, start: &Vector) -> Result<Self> {
         let field = AnyField::of_text(Cow::Borrowed(system))?;
         let jacobian = field.jacobian(start);
-        let fastest = eigenvalues(&jacobian)
-            .map_or(0.0, |all| all.iter().map(|z| z.norm()).fold(0.0, f64::max));
-        let time = round(1.0 / fastest);
+        let time = round(1.0 / fastest(&jacobian));
         let time = if time.is_normal() { time } else { 1.0 };
-        let mut sizes = start.map(|x| round(x.abs()));
-        let mut way = field.f(start) * time;
-        for _ in 0..start.len() {
-            for (size, way) in sizes.iter_mut().zip(&way) {
-                if !size.is_normal() {
-                    *size = round(way.abs());
-                }
-            }
-            way = &jacobian * way * time;
-        }
+        let sizes = sizes_at_start((&field, &jacobian), start, time);
         let size = |size: &f64| if size.is_normal() { *size } else { 1.0 };
         Ok(Self::new(sizes.iter().map(size).collect(), time))
     }
 
     /// With which a run from here that lasts so long begins: those at its start, and of a state that begins at 0 no less than a tiny part of what
-    /// it comes to. The rate there may be all but 0, as before a switch.
+    /// it comes to. The rate there may be all but 0, as before a switch. Where time is a variable the start has the initial time after the states.
     ///
     /// # Errors
     /// Those of the field.
     pub fn beginning(system: &TextSystem, start: &Vector, lasting: f64) -> Result<Self> {
         /// Of what a state comes to.
         const PART: f64 = 1e-8;
-        let mut units = Self::at_start(system, start)?;
-        if start.iter().all(|x| *x != 0.0) {
+        let mut units = match system.is_timed() {
+            true => Self::at_start_in_time(system, start, lasting)?,
+            false => Self::at_start(system, start)?,
+        };
+        if start.iter().take(units.sizes.len()).all(|x| *x != 0.0) {
             return Ok(units);
         }
         if let Some(seen) = units.watched(&units.field(system)?, start, lasting / units.time)? {
@@ -175,13 +169,14 @@ impl MotionUnits {
         // A logarithm says by itself how far its state has come.
         let plain = |i: usize| self.signs[i] == 0.0;
         let beyond = |i: usize| plain(i) && state[i].is_finite() && state[i].abs() > FAR;
-        (0..state.len()).any(beyond).then(|| {
+        let states = 0..self.sizes.len();
+        states.clone().any(beyond).then(|| {
             let larger = |i: usize| match plain(i) {
                 true => self.sizes[i] * round(state[i].abs().max(1.0)),
                 false => self.sizes[i],
             };
             MotionUnits {
-                sizes: (0..state.len()).map(larger).collect(),
+                sizes: states.map(larger).collect(),
                 ..self.clone()
             }
         })
@@ -202,11 +197,12 @@ impl MotionUnits {
     /// The same with the logarithms of the states of `which` that are not 0; `None` where there are no more of these.
     pub fn in_logarithms(&self, state: &[f64], which: impl Fn(usize) -> bool) -> Option<Self> {
         let is_new = |i: usize| self.signs[i] == 0.0 && state[i] != 0.0 && which(i);
-        if !(0..state.len()).any(is_new) {
+        let states = 0..self.sizes.len();
+        if !states.clone().any(is_new) {
             return None;
         }
         let mut signs = self.signs.clone();
-        for i in (0..state.len()).filter(|&i| is_new(i)) {
+        for i in states.filter(|&i| is_new(i)) {
             signs[i] = state[i].signum();
         }
         Some(MotionUnits {
@@ -343,22 +339,28 @@ impl MotionUnits {
         if self.signs[state] < 0.0 { -1.0 } else { 1.0 }
     }
 
+    /// The unit of a variable, and its sign where it is followed by its logarithm, else 0. After the states there may be time.
+    fn of_variable(&self, i: usize) -> (f64, f64) {
+        match self.sizes.get(i) {
+            Some(&size) => (size, self.signs[i]),
+            None => (self.time, 0.0),
+        }
+    }
+
     /// The value of a state in its unit here, or its logarithm.
     pub fn inward_value(&self, state: usize, x: f64) -> f64 {
-        let x = x / self.sizes[state];
-        match self.signs[state] {
-            0.0 => x,
-            sign => (sign * x).ln(),
+        match self.of_variable(state) {
+            (size, 0.0) => x / size,
+            (size, sign) => (sign * (x / size)).ln(),
         }
     }
 
     /// The same in the system's own.
     pub fn outward_value(&self, state: usize, x: f64) -> f64 {
-        self.sizes[state]
-            * match self.signs[state] {
-                0.0 => x,
-                sign => sign * x.exp(),
-            }
+        match self.of_variable(state) {
+            (size, 0.0) => size * x,
+            (size, sign) => size * (sign * x.exp()),
+        }
     }
 
     /// What the error of a value here makes of the value in the system's own unit.
@@ -378,8 +380,9 @@ impl MotionUnits {
     /// The same state in other units, also where its value is below the doubles and only its logarithm is known.
     pub fn moved(&self, other: &Self, state: &[f64]) -> Vector {
         Vector::from_fn(state.len(), |i, _| {
-            match self.signs[i] != 0.0 && self.signs[i] == other.signs[i] {
-                true => state[i] + (self.sizes[i] / other.sizes[i]).ln(),
+            let ((here, sign), (there, new_sign)) = (self.of_variable(i), other.of_variable(i));
+            match sign != 0.0 && sign == new_sign {
+                true => state[i] + (here / there).ln(),
                 false => other.inward_value(i, self.outward_value(i, state[i])),
             }
         })
@@ -398,4 +401,30 @@ impl MotionUnits {
         }
         inward
     }
+}
+
+/// The fastest rate of a linearised system.
+fn fastest(jacobian: &Matrix) -> f64 {
+    let all = eigenvalues(jacobian);
+    all.map_or(0.0, |all| all.iter().map(|z| z.norm()).fold(0.0, f64::max))
+}
+
+/// The size of every variable at the start; where it is 0, how far it moves in this time, at first or by what others then do to it. No number of
+/// which that is known is 0 or none at all.
+fn sizes_at_start(
+    (field, jacobian): (&AnyField<'_>, &Matrix),
+    start: &Vector,
+    time: f64,
+) -> Vector {
+    let mut sizes = start.map(|x| round(x.abs()));
+    let mut way = field.f(start) * time;
+    for _ in 0..start.len() {
+        for (size, way) in sizes.iter_mut().zip(&way) {
+            if !size.is_normal() {
+                *size = round(way.abs());
+            }
+        }
+        way = jacobian * way * time;
+    }
+    sizes
 }

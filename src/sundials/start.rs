@@ -48,7 +48,8 @@ impl<const N: usize> Cvode<N> {
         Ok(())
     }
 
-    /// What a step may err in each variable, where that is not the same for all ([`crate::field::VectorField::absolute_tolerances`]).
+    /// What a step may err in each variable, where that is not the same for all ([`crate::field::VectorField::absolute_tolerances`]). CVODES takes the
+    /// root mean square over all variables: those that do not count shall not make it less for the others.
     pub(super) fn set_absolute_tolerances(&mut self, problem: &Problem<'_, N>) -> Result<()> {
         let Tolerances { rtol, atol, .. } = self.tolerances;
         let each = problem.field.absolute_tolerances(atol);
@@ -58,8 +59,11 @@ impl<const N: usize> Cvode<N> {
             // SAFETY: a live memory.
             unsafe { check!(CV, &self.messages, CVodeSStolerances(m, rtol, atol))? };
         } else if !is_same {
+            let counted = each.iter().filter(|one| one.is_finite()).count();
+            let part = (counted as f64 / N as f64).sqrt();
+            let rtol = part * rtol;
             let mut tolerances = vector::<N>(self.operations, &self.context)?;
-            tolerances.set(&each);
+            tolerances.set(&(each * part));
             let made = tolerances.as_ptr();
             // SAFETY: a live memory, and a vector like the one it was given at first, which CVODES copies.
             unsafe { check!(CV, &self.messages, CVodeSVtolerances(m, rtol, made))? };

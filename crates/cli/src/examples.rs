@@ -23,7 +23,9 @@ const INTEGRATE: &str =
 Slide-hold-slide, and a ramp of the driving velocity from 1 to 10:
   twinslip integrate --driving 1 --stiffness 0.5 --program 50:0,150:1,200-250:10 --until 300
 Another system, from a file with its equations or one that is built in:
-  twinslip integrate --system lorenz --until 30 -o lorenz.csv --plot lorenz.svg";
+  twinslip integrate --system lorenz --until 30 -o lorenz.csv --plot lorenz.svg
+One that is driven, with t in its formulas:
+  twinslip integrate --system duffing --until 200 --points 2001 -o duffing.csv";
 
 const EQUILIBRIA: &str = "Example, the three steady states between the pitchforks of the paper's Fig. 5, and which is stable:
   twinslip equilibria --driving 1000 --stiffness 0.45

@@ -81,7 +81,7 @@ pub fn run(options: &IntegrateOptions, call: &Call) -> Result<Ending> {
     } else {
         &[]
     };
-    match TextModel::of(&options.model, free)? {
+    match TextModel::in_time(&options.model, free)? {
         Some(model) => integrate(&TextPlan::new(options, model)?, options, call),
         None => integrate(&Plan::new(options)?, options, call),
     }

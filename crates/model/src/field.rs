@@ -71,10 +71,29 @@ pub trait VectorField<const N: usize>: Send + Sync {
         [false; N]
     }
 
-    /// What a step may err in every variable beside its relative error: `atol`, or next to nothing where it is a factor of its own rate.
+    /// Whether the last variable is time, whose rate is 1: it is known but for rounding, and no step is judged by it.
+    fn last_is_time(&self) -> bool {
+        false
+    }
+
+    /// A state at the end of a step of this length, with the time there if that is a variable: the sum of what a method adds up in a step is
+    /// rounded, and over a million steps time would be late by more than the tolerance.
+    fn timed(&self, mut end: State<N>, begin: &State<N>, h: f64) -> State<N> {
+        if self.last_is_time() {
+            end[N - 1] = begin[N - 1] + h;
+        }
+        end
+    }
+
+    /// What a step may err in every variable beside its relative error: `atol`, or next to nothing where it is a factor of its own rate; anything
+    /// where it is time.
     fn absolute_tolerances(&self, atol: f64) -> State<N> {
         let own = |factor| if factor { f64::MIN_POSITIVE } else { atol };
-        State::from(self.own_factors().map(own))
+        let mut all = State::from(self.own_factors().map(own));
+        if self.last_is_time() {
+            all[N - 1] = f64::INFINITY;
+        }
+        all
     }
 
     /// Whether J may hold NaN or infinite entries where f is continuous, as that of formulas with sqrt(max(0, x)) does: steps are then made with

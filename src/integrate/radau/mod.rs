@@ -74,6 +74,11 @@ impl<const N: usize> StageField for Of<'_, N> {
     fn underflow(&self, t: f64, h: f64, y: &[f64]) -> Error {
         step_underflow(self.0, t, h, &state(y))
     }
+
+    fn timed(&self, end: &mut [f64], begin: &[f64], h: f64) {
+        let made = self.0.timed(state(end), &state(begin), h);
+        end.copy_from_slice(made.as_slice());
+    }
 }
 
 impl Radau {

@@ -18,6 +18,8 @@ pub(super) trait StageField {
     fn jacobian(&self, y: &[f64], exact: bool, into: &mut Matrix);
     fn parameter_derivative(&self, y: &[f64], place: usize, into: &mut [f64]);
     fn underflow(&self, t: f64, h: f64, y: &[f64]) -> Error;
+    /// As [`crate::field::VectorField::timed`].
+    fn timed(&self, end: &mut [f64], begin: &[f64], h: f64);
 }
 
 /// What a step may err by.
@@ -299,6 +301,8 @@ impl<'a> Stages<'a> {
             return None;
         }
         self.next = &self.y + self.z.column(count - 1);
+        let (next, y) = (self.next.as_mut_slice(), self.y.as_slice());
+        self.field.timed(next, y, h);
         let scale = h * self.method.damping;
         let of_slope = |f: &Vector, slopes: &Matrix, method: &Coefficients| {
             let off = f - slopes * &method.at_begin;

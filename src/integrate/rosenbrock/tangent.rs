@@ -185,8 +185,9 @@ impl<S: Scheme, const N: usize> Steppable for Bundle<'_, S, N> {
         };
         stepping.all_stages(self.scheme);
         self.last_f = stepping.newest;
+        let next = combination(self.y, &tableau.m, count, &self.u);
         self.next = (
-            combination(self.y, &tableau.m, count, &self.u),
+            self.field.timed(next, &self.y, h),
             combination(self.tangent, &tableau.m, count, &self.v),
         );
         let error = combination(State::zeros(), &tableau.e, count, &self.u);

@@ -138,7 +138,8 @@ impl<S: Scheme, const N: usize> Steppable for StepState<'_, S, N> {
         };
         stepping.all_stages(self.scheme);
         self.last_f = stepping.newest;
-        self.next = combination(self.y, &tableau.m, tableau.stages, &self.stages);
+        let next = combination(self.y, &tableau.m, tableau.stages, &self.stages);
+        self.next = self.field.timed(next, &self.y, h);
         let error = combination(State::zeros(), &tableau.e, tableau.stages, &self.stages);
         error_norm(self.may_err, &error, &self.y, &self.next)
     }

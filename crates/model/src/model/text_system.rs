@@ -18,6 +18,8 @@ pub struct TextSystem {
     rates: Arc<Expressions>,
     slip_rates: Option<Arc<Expressions>>,
     states: Vec<&'static str>,
+    /// Whether the formulas name time: it is then one variable more, the last, and its rate is 1.
+    is_timed: bool,
     names: Vec<&'static str>,
     parameters: Vec<f64>,
     /// The units of the states, in those of the formulas as they were read.
@@ -41,9 +43,34 @@ impl TextSystem {
             rates: Arc::new(rates),
             slip_rates: None,
             states: states.iter().map(|name| kept(name)).collect(),
+            is_timed: false,
             names: parameters.iter().map(|(name, _)| kept(name)).collect(),
             parameters: parameters.iter().map(|(_, value)| *value).collect(),
             sizes: vec![1.0; states.len()],
+        })
+    }
+
+    /// The same where formulas name time: the rates of the states in these, in time, which is the variable after them, and in the parameters;
+    /// and the rate of time after theirs, which is 1. So a start has the initial time after the values of the states.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] unless there are 1 to [`TextSystem::LARGEST`] - 1 states.
+    ///
+    /// # Panics
+    /// Where there is not one rate more than there are states.
+    pub fn in_time(
+        rates: Expressions,
+        states: &[&str],
+        parameters: &[(&str, f64)],
+    ) -> Result<Self> {
+        assert_eq!(rates.count(), states.len() + 1, "the last rate is of time");
+        if states.len() >= Self::LARGEST {
+            let must = format!("at most {} beside time", Self::LARGEST - 1);
+            return Err(Error::parameter("the number of states", states.len(), must));
+        }
+        Ok(TextSystem {
+            is_timed: true,
+            ..Self::new(rates, states, parameters)?
         })
     }
 
@@ -74,7 +101,9 @@ impl TextSystem {
             return Ok(self.clone());
         }
         assert!(self.slip_rates.is_none(), "interfaces have their own units");
-        let rates = self.rates.in_units(sizes, time, self.names.len())?;
+        let of_time = self.is_timed.then_some(time);
+        let units: Vec<f64> = sizes.iter().copied().chain(of_time).collect();
+        let rates = self.rates.in_units(&units, time, self.names.len())?;
         Ok(TextSystem {
             rates: Arc::new(rates),
             sizes: self.sizes.iter().zip(sizes).map(|(x, y)| x * y).collect(),
@@ -88,16 +117,18 @@ impl TextSystem {
     /// # Errors
     /// [`Error::Input`] where the formulas become too long.
     pub fn in_logarithms(&self, signs: &[f64]) -> Result<Option<Self>> {
-        let rates = self.rates.in_logarithms(signs, self.names.len())?;
+        let of_time = self.is_timed.then_some(0.0);
+        let signs: Vec<f64> = signs.iter().copied().chain(of_time).collect();
+        let rates = self.rates.in_logarithms(&signs, self.names.len())?;
         Ok(rates.map(|rates| TextSystem {
             rates: Arc::new(rates),
             ..self.clone()
         }))
     }
 
-    /// For every state whether it is a factor of its own rate, which is 0 where it is.
+    /// For every variable whether it is a factor of its own rate, which is 0 where it is.
     pub fn own_factors(&self) -> Vec<bool> {
-        self.rates.own_factors(self.states.len(), &self.parameters)
+        self.rates.own_factors(self.variables(), &self.parameters)
     }
 
     /// Whether the formulas take powers that are not whole, or roots: their slopes may be infinite at a zero of the base.
@@ -108,6 +139,7 @@ impl TextSystem {
     /// For every state whether it can be followed by its logarithm: it is a factor of its own rate, and the formulas show what that is over it.
     pub fn have_logarithms(&self) -> Vec<bool> {
         let mut all = self.own_factors();
+        all.truncate(self.states.len());
         for (i, has) in all.iter_mut().enumerate().filter(|(_, own)| **own) {
             let mut signs = vec![0.0; self.states.len()];
             signs[i] = 1.0;
@@ -121,7 +153,17 @@ impl TextSystem {
         &self.sizes
     }
 
-    /// The names of the variables.
+    /// The number of variables: one for each state, and where formulas name time one more, the last.
+    pub fn variables(&self) -> usize {
+        self.states.len() + usize::from(self.is_timed)
+    }
+
+    /// Whether formulas name time, which is then the variable after the states.
+    pub fn is_timed(&self) -> bool {
+        self.is_timed
+    }
+
+    /// The names of the states.
     pub fn states(&self) -> &[&'static str] {
         &self.states
     }
@@ -165,7 +207,7 @@ impl TextSystem {
     /// The rates in numbers of any kind.
     ///
     /// # Panics
-    /// Where x has fewer components than there are states, as all that follow.
+    /// Where x has fewer components than there are variables, as all that follow.
     pub fn rates<T: Real>(&self, x: &[T]) -> Vec<T> {
         let parameters: Vec<T> = self.parameters.iter().map(|&p| T::constant(p)).collect();
         self.rates.evaluate(x, &parameters)
@@ -180,7 +222,7 @@ impl TextSystem {
 
     /// The Jacobian, row by row, in numbers of any kind.
     pub fn jacobian<T: Real>(&self, x: &[T]) -> Vec<T> {
-        let n = self.states.len();
+        let n = self.variables();
         let mut all = vec![T::constant(0.0); n * n];
         for first in (0..n).step_by(AT_ONCE) {
             let along = |(j, &value): (usize, &T)| {
@@ -200,13 +242,35 @@ impl TextSystem {
         all
     }
 
+    /// The rates and their first three derivatives in the last variable, in the others held fixed: by time, where that is one.
+    ///
+    /// # Panics
+    /// As of [`TextSystem::rates`].
+    pub fn derivatives_in_last(&self, x: &[f64]) -> [Vec<f64>; 4] {
+        type Third = Jet<Jet<Jet<f64, 1>, 1>, 1>;
+        let mut all: Vec<Third> = x.iter().map(|&x| Third::constant(x)).collect();
+        if let (Some(last), Some(&x)) = (all.last_mut(), x.last()) {
+            let [x] = Jet::variables([x]);
+            let [x] = Jet::variables([x]);
+            [*last] = Jet::variables([x]);
+        }
+        let rates = self.rates(&all);
+        let of = |part: fn(&Third) -> f64| rates.iter().map(part).collect();
+        [
+            of(|f| f.value.value.value),
+            of(|f| f.gradient[0].value.value),
+            of(|f| f.gradient[0].gradient[0].value),
+            of(|f| f.gradient[0].gradient[0].gradient[0]),
+        ]
+    }
+
     fn second_derivative(&self, [y, u, v]: [&[f64]; 3]) -> Vec<f64> {
         // f(y + a u + b v), differentiated in a and in b.
         let of = |i: usize| Jet {
             value: single(y[i], u[i]),
             gradient: [single(v[i], 0.0)],
         };
-        let x: Vec<_> = (0..self.states.len()).map(of).collect();
+        let x: Vec<_> = (0..self.variables()).map(of).collect();
         let rates = self.rates(&x).into_iter();
         rates.map(|f| f.gradient[0].gradient[0]).collect()
     }
@@ -272,10 +336,10 @@ impl<'a, const N: usize> TextField<'a, N> {
     /// # Errors
     /// [`Error::Parameter`] where the system has other than N variables.
     pub fn of(system: Cow<'a, TextSystem>) -> Result<Self> {
-        let count = system.states.len();
+        let count = system.variables();
         if count != N {
             let must = format!("{N}, as many as the field is asked for");
-            return Err(Error::parameter("the number of states", count, must));
+            return Err(Error::parameter("the number of variables", count, must));
         }
         Ok(TextField {
             system,
@@ -343,6 +407,10 @@ impl<const N: usize> VectorField<N> for TextField<'_, N> {
             let all = self.system.own_factors();
             std::array::from_fn(|i| all[i])
         })
+    }
+
+    fn last_is_time(&self) -> bool {
+        self.system.is_timed
     }
 
     fn parametrised(&self) -> Option<&dyn Parametrised<N>> {

@@ -11,7 +11,7 @@ pub(super) use transported::Transported;
 
 use super::compiled::Compiled;
 use super::element::{Element, rough_exp2, rough_log2};
-use super::program::Program;
+use super::program::{Program, Source};
 use super::program_rows::ProgramRows;
 use super::stepper::{LEAST, SAFETY, SHORTER, SHORTER_UNITS};
 use super::{Accuracy, usual_order};
@@ -173,20 +173,23 @@ impl<'a, T: Element> Interpreted<'a, T> {
         self.probed = false;
         self.rejected = 0;
         self.record_here();
-        // The time in which the state would change by its own size; of a variable that is zero, by the rounding of the largest.
-        let sizes = || self.reached.x.iter().map(|x| x.abs());
-        let largest = sizes().map(|x| x.largest_lane()).fold(0.0, f64::max);
+        // The time in which the state would change by its own size; of a variable that is zero, by the rounding of the largest. A series that
+        // ends after its second term, as that of time, asks for no unit.
+        let ends = |i: &usize| matches!(self.program.outputs[*i], Source::Number(_));
+        let rows = || (0..self.reached.x.len()).filter(|i| !ends(i));
+        let size = |i: usize| self.reached.x[i].abs();
+        let largest = rows().map(|i| size(i).largest_lane()).fold(0.0, f64::max);
         if largest == 0.0 {
             // Nothing says in what time they change: as long as a step may be.
             self.next_unit = power_of_two(f64::MAX);
             return;
         }
         let least = self.any.like(f64::max(LEAST, largest * f64::EPSILON));
-        let rate = |(i, size): (usize, T)| {
+        let rate = |i: usize| {
             let rate = self.rows.coefficient(self.program.outputs[i], 0);
-            (rate / size.max(least)).abs().largest_lane()
+            (rate / size(i).max(least)).abs().largest_lane()
         };
-        let rate = sizes().enumerate().map(rate).fold(0.0, f64::max);
+        let rate = rows().map(rate).fold(0.0, f64::max);
         self.next_unit = power_of_two(1.0 / f64::max(rate, f64::MIN_POSITIVE));
     }
 

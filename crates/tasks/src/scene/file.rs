@@ -150,10 +150,15 @@ impl Reader<'_> {
 
     /// What is wrong at a byte, by line and column.
     pub(super) fn misplaced(&self, at: usize, what: impl std::fmt::Display) -> Error {
+        let (line, column) = self.place(at);
+        Error::Input(format!("{}:{line}:{column}: {what}", self.name))
+    }
+
+    /// The line and the column of a byte.
+    pub(super) fn place(&self, at: usize) -> (usize, usize) {
         let begin = self.text.get(..at).unwrap_or(self.text);
         let column = 1 + begin.chars().rev().take_while(|c| *c != '\n').count();
-        let line = self.line(&(at..at));
-        Error::Input(format!("{}:{line}:{column}: {what}", self.name))
+        (self.line(&(at..at)), column)
     }
 
     /// What is wrong on the line of `span` if a text there has no quotes, with the line as it should be.

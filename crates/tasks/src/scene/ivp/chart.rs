@@ -8,7 +8,7 @@ use twinslip::number::Real;
 /// the user's.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Chart {
-    /// How many variables the field has.
+    /// How many variables the field has, without time, which may be one more.
     pub variables: usize,
     /// Whether they are tau and ln psi.
     pub slides: bool,
@@ -57,7 +57,7 @@ impl Chart {
     pub fn outward(&self, y: &[f64], given: Given, into: &mut Vec<f64>) {
         let [_, stress, state] = self.units;
         if !self.slides {
-            into.extend_from_slice(y);
+            into.extend_from_slice(&y[..self.variables]);
             return;
         }
         let psi = |&x: &f64| match given {

@@ -11,8 +11,6 @@ use twinslip::number::{Interval, Jet, Real};
 pub struct IvpFormula {
     /// Its first rate is the function.
     system: TextSystem,
-    /// Which of its states is time.
-    time: Option<usize>,
 }
 
 /// The parts into which a step was divided.
@@ -27,21 +25,19 @@ pub(super) struct Parts {
 }
 
 impl IvpFormula {
-    /// From the text of a system, whose first rate is the function: its states are so many values in their order. One that is called `t` is
-    /// time itself, whether it is one of the values or one more, the last.
+    /// From the text of a system, whose first rate is the function: its states are so many values in their order, and it may name time.
     ///
     /// # Errors
     /// [`Error::Input`] for what is wrong in the text, and for another number of states.
     pub fn parse(text: &str, values: usize) -> Result<Self> {
         let system = SystemFile::parse("event", text)?.system;
         let count = system.states().len();
-        let time = system.states().iter().position(|&name| name == "t");
-        if count != values && (count, time) != (values + 1, Some(values)) {
+        if count != values {
             return Err(Error::Input(format!(
-                "the formula of an event has {count} states, but must have the {values} values, and may have t after them"
+                "the formula of an event has {count} states, but must have the {values} values"
             )));
         }
-        Ok(IvpFormula { system, time })
+        Ok(IvpFormula { system })
     }
 
     /// The function.
@@ -50,11 +46,8 @@ impl IvpFormula {
     }
 
     fn of<T: Real>(&self, mut x: Vec<T>, time: T) -> T {
-        if let Some(place) = self.time {
-            match x.get_mut(place) {
-                Some(value) => *value = time,
-                None => x.push(time),
-            }
+        if self.system.is_timed() {
+            x.push(time);
         }
         self.system.rates(&x)[0]
     }

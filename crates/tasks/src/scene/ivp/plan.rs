@@ -21,7 +21,7 @@ pub struct IvpPlan {
     /// The user's.
     pub(super) span: (f64, f64),
     pub(super) start: Vec<f64>,
-    /// What is integrated: dimensionless times, and the variables.
+    /// What is integrated: dimensionless times, and the variables, of which the last may be time.
     pub(super) inner_span: (f64, f64),
     pub(super) from: Vector,
     method: Choice,
@@ -54,7 +54,7 @@ impl IvpPlan {
         if let Some(i) = start.iter().position(|x| !x.is_finite()) {
             return Err(Error::parameter(format!("start[{i}]"), start[i], "finite"));
         }
-        let (model, chart, from, numerics) = match TextModel::of(model, &[])? {
+        let (model, chart, from, numerics) = match TextModel::in_time(model, &[])? {
             Some(text) => {
                 let slides = text.slab.is_some();
                 let chart = Chart::new(text.system.states().len(), slides, false, text.units());
@@ -85,13 +85,18 @@ impl IvpPlan {
             let must = "of two times that differ and are within doubles without their unit";
             return Err(Error::parameter("span", told(span), must));
         }
+        let from = Vector::from_vec(from);
+        let from = match &model {
+            Model::Text(text) => text.at_time(from, inner_span.0),
+            Model::Slab(..) => from,
+        };
         let plan = IvpPlan {
             model,
             chart,
             span,
             start: start.to_vec(),
             inner_span,
-            from: Vector::from_vec(from),
+            from,
             method,
             tolerances,
             max_steps,

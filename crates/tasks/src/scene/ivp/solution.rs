@@ -89,7 +89,7 @@ impl IvpSolution {
                     self.coefficients.extend_from_slice(series.variable(i));
                 }
                 // ln 1 = 0 tells whether they are logarithms already.
-                let ones = vec![1.0; n];
+                let ones = vec![1.0; step.y0.len()];
                 let same = series.state_of(&ones).as_slice() == ones;
                 Piece {
                     begin: series.begin(),

@@ -18,6 +18,9 @@ const MOST: usize = 200;
 /// What stands in rows beside the states, and so can't be one.
 const COLUMNS: [&str; 6] = ["time", "return", "period", "verdict", "residual", "point"];
 
+/// What time is called in formulas, where nothing else is.
+pub(super) const TIME: &str = "t";
+
 pub(super) type Key<'a> = Spanned<Cow<'a, str>>;
 
 /// A system as a file has it.
@@ -31,6 +34,17 @@ pub struct SystemFile {
     pub start: Vec<Option<f64>>,
     /// A number that tells its formulas from others.
     pub fingerprint: String,
+    /// Where a formula first names time, if one does.
+    pub time: Option<TimeUse>,
+}
+
+/// Where a formula names time.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TimeUse {
+    /// Of what the formula is: a state whose rate it is, or a name of `[where]`.
+    pub formula: String,
+    /// Line and column, from 1 on.
+    pub place: (usize, usize),
 }
 
 impl SystemFile {
@@ -62,6 +76,13 @@ pub(super) struct Formula<'a> {
     plain: bool,
 }
 
+impl Formula<'_> {
+    /// Where a place of it stands in the file.
+    fn offset(&self, at: usize) -> usize {
+        self.begin + if self.plain { at } else { 0 }
+    }
+}
+
 /// What a name stands for.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Meaning {
@@ -76,6 +97,8 @@ pub(super) struct Tables<'a> {
     pub reader: Reader<'a>,
     pub name: String,
     pub states: Vec<&'a str>,
+    /// Where their list stands.
+    states_at: usize,
     pub parameters: Vec<(&'a str, f64)>,
     pub rates: Vec<Formula<'a>>,
     pub defined: Vec<Formula<'a>>,
@@ -113,6 +136,7 @@ impl<'a> Tables<'a> {
         Ok(Tables {
             name: String::new(),
             states: Vec::new(),
+            states_at: 0,
             parameters: Vec::new(),
             rates: Vec::new(),
             defined: Vec::new(),
@@ -166,6 +190,7 @@ impl<'a> Tables<'a> {
             return Err(self.missing("states", "which are the names of all states?"));
         };
         let at = value.span().start;
+        self.states_at = at;
         let most = TextSystem::LARGEST;
         let Some(list) = value.get_ref().as_array() else {
             let kind = value.get_ref().type_str();
@@ -321,17 +346,39 @@ impl<'a> Tables<'a> {
     }
 
     pub fn located(&self, formula: &Formula<'_>, Wrong { at, what }: Wrong) -> Error {
-        let within = if formula.plain { at } else { 0 };
-        self.reader.misplaced(formula.begin + within, what)
+        self.reader.misplaced(formula.offset(at), what)
+    }
+
+    /// That a formula names time there.
+    pub fn time_use(&self, formula: &Formula<'_>, at: usize) -> TimeUse {
+        let of_rate = self.rates.iter().any(|rate| std::ptr::eq(rate, formula));
+        let kind = if of_rate { "the rate of " } else { "" };
+        TimeUse {
+            formula: format!("{kind}{}", formula.name),
+            place: self.reader.place(formula.offset(at)),
+        }
     }
 
     fn system(self, fingerprint: String) -> Result<SystemFile> {
-        let rates = lowered(&self)?;
+        let (rates, time) = lowered(&self)?;
+        let most = TextSystem::LARGEST - 1;
+        let system = match &time {
+            None => TextSystem::new(rates, &self.states, &self.parameters)?,
+            Some(TimeUse { formula, .. }) if self.states.len() > most => {
+                let what = format!(
+                    "there are {} states, but there must be 1 to {most} where {formula} names {TIME}, the time",
+                    self.states.len()
+                );
+                return Err(self.reader.misplaced(self.states_at, what));
+            }
+            Some(_) => TextSystem::in_time(rates, &self.states, &self.parameters)?,
+        };
         Ok(SystemFile {
-            system: TextSystem::new(rates, &self.states, &self.parameters)?,
+            system,
             name: self.name,
             start: self.start,
             fingerprint,
+            time,
         })
     }
 }

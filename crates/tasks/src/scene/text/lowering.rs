@@ -1,18 +1,25 @@
 //! From the formulas of a file to operations: names looked up, those of `[where]` put in their places.
 
-use super::file::{Formula, Meaning, Tables};
+use super::file::{Formula, Meaning, TIME, Tables, TimeUse};
 use super::grammar::{Token, Wrong};
 use twinslip::error::{Error, Result, did_you_mean};
 use twinslip::expression::{Builder, Expressions, Function, Place};
 
-/// The operations of all rates.
-pub(super) fn lowered(tables: &Tables<'_>) -> Result<Expressions> {
+/// The operations of all rates; and where time is first named, if it is. It is then the variable after the states, and has the rate after theirs.
+pub(super) fn lowered(tables: &Tables<'_>) -> Result<(Expressions, Option<TimeUse>)> {
     let states: Vec<_> = (0..tables.states.len()).map(Some).collect();
-    let mut lowering = Lowering::of(tables, &states);
+    let mut lowering = Lowering {
+        takes_time: true,
+        ..Lowering::of(tables, &states)
+    };
     lowering.check()?;
     let rates = tables.rates.iter();
     let rates: Result<Vec<Place>> = rates.map(|rate| lowering.place(rate)).collect();
-    Ok(lowering.builder.complete(rates?))
+    let mut rates = rates?;
+    if lowering.time.is_some() {
+        rates.push(lowering.builder.number(1.0)?);
+    }
+    Ok((lowering.builder.complete(rates), lowering.time))
 }
 
 /// The operations of each rate on its own, in those states that have a place for it.
@@ -44,6 +51,9 @@ struct Lowering<'t, 'a> {
     tables: &'t Tables<'a>,
     /// The place of each state among the variables, where the formula may name it.
     states: &'t [Option<usize>],
+    /// Whether formulas may name time, and where one did first.
+    takes_time: bool,
+    time: Option<TimeUse>,
     builder: Builder,
     defined: Vec<Progress>,
 }
@@ -53,6 +63,8 @@ impl<'t, 'a> Lowering<'t, 'a> {
         Lowering {
             tables,
             states,
+            takes_time: false,
+            time: None,
             builder: Builder::default(),
             defined: vec![Progress::Open; tables.defined.len()],
         }
@@ -124,6 +136,11 @@ impl<'t, 'a> Lowering<'t, 'a> {
             }
             Some(&Meaning::Defined(i)) => return self.define(i),
             None if name == "pi" => self.builder.pi(),
+            None if name == TIME && self.takes_time => {
+                let place = || self.tables.time_use(formula, at);
+                self.time.get_or_insert_with(place);
+                self.builder.variable(self.states.len())
+            }
             None => return Err(self.wrong(formula, at, self.unknown(name))),
         };
         made.map_err(|error| self.wrong(formula, at, error.to_string()))
@@ -142,10 +159,11 @@ impl<'t, 'a> Lowering<'t, 'a> {
         if Function::named(name).is_some() {
             return format!("{name:?} is a function, whose argument must follow in parentheses");
         }
-        if ["t", "time"].contains(&name) {
-            return format!(
-                "{name:?} is no state: where time is needed, add a state whose rate is 1 and whose start is 0"
-            );
+        if name == TIME {
+            return format!("{name:?} is time, and a law is the same at all times");
+        }
+        if name == "time" && self.takes_time {
+            return format!("{name:?} is no state: in formulas time is called {TIME}");
         }
         let known = self.tables.meanings.keys().copied().chain(["pi"]);
         let hint = did_you_mean(name, known);

@@ -1,6 +1,6 @@
 //! A system of one's own with what the command line says about it.
 
-use super::file::SystemFile;
+use super::file::{SystemFile, TIME, TimeUse};
 use super::law_file::{DRIVING, LawFile};
 use super::options::TextOptions;
 use super::slab::TextSlab;
@@ -31,6 +31,8 @@ pub struct TextModel {
     pub system: TextSystem,
     /// The interfaces, where it is these.
     pub slab: Option<TextSlab>,
+    /// Where a formula names time, with what messages call the file, if one does.
+    time: Option<(String, TimeUse)>,
     start: Vec<Option<f64>>,
     units: Units,
     echo: Map<String, Value>,
@@ -43,14 +45,23 @@ impl TextModel {
     /// # Errors
     /// As [`TextModel::named`], and those of the options of interfaces.
     pub fn of(options: &ModelOptions, free: &[&str]) -> Result<Option<Self>> {
+        Self::autonomous(Self::in_time(options, free)?)
+    }
+
+    /// The same of an initial value problem, whose formulas may name time.
+    ///
+    /// # Errors
+    /// As of [`TextModel::of`].
+    pub fn in_time(options: &ModelOptions, free: &[&str]) -> Result<Option<Self>> {
         let law = match options.slab.law_file() {
             Some(path) => read_law(path)?,
             None if options.slab.has_clusters() => built_in_law(&options.slab.law)?,
-            None => return Self::named(&options.slab.text),
+            None => return Self::read(&options.slab.text),
         };
         let (slab, system) = TextSlab::new(law, options, free)?;
         Ok(Some(TextModel {
             echo: slab.echo(&system),
+            time: None,
             start: Vec::new(),
             units: Units::none(),
             slab: Some(slab),
@@ -61,9 +72,25 @@ impl TextModel {
     /// The system that the options name; `None` where they name none.
     ///
     /// # Errors
-    /// [`Error::File`] for a file that can't be read, [`Error::Input`] for what is wrong in it, by line and column, and
-    /// [`Error::Parameter`] for a parameter that it does not have.
+    /// [`Error::File`] for a file that can't be read, [`Error::Input`] for what is wrong in it, by line and column, and where a formula
+    /// names time, and [`Error::Parameter`] for a parameter that it does not have.
     pub fn named(options: &TextOptions) -> Result<Option<Self>> {
+        Self::autonomous(Self::read(options)?)
+    }
+
+    /// This model, unless its formulas name time.
+    fn autonomous(model: Option<Self>) -> Result<Option<Self>> {
+        let Some((file, TimeUse { formula, place })) = model.as_ref().and_then(|x| x.time.as_ref())
+        else {
+            return Ok(model);
+        };
+        let (line, column) = place;
+        Err(Error::Input(format!(
+            "{file}:{line}:{column}: {formula} names {TIME}, the time, and only `integrate`, and solve_ivp in Python, take such a system"
+        )))
+    }
+
+    fn read(options: &TextOptions) -> Result<Option<Self>> {
         let Some(path) = &options.system else {
             return Ok(None);
         };
@@ -93,6 +120,7 @@ impl TextModel {
         echo.insert("states".into(), json!(read.system.states()));
         echo.insert("parameters".into(), Value::Object(parameters));
         Ok(Some(TextModel {
+            time: read.time.map(|time| (called(path), time)),
             system: read.system,
             slab: None,
             start: read.start,
@@ -154,6 +182,14 @@ impl TextModel {
     /// Those of [`AnyField::of_text`].
     pub fn field(&self) -> Result<AnyField<'_>> {
         AnyField::of_text(Cow::Borrowed(&self.system))
+    }
+
+    /// The values of all variables where the states have these: time is one, where formulas name it.
+    pub(in crate::scene) fn at_time(&self, states: Vector, time: f64) -> Vector {
+        match self.system.is_timed() {
+            true => states.push(time),
+            false => states,
+        }
     }
 
     /// The values of all states: those of a text, or of the file where none is given. Of interfaces the text has tau and psi, as that of
@@ -253,13 +289,20 @@ fn bounded<'a>(name: &str, text: &'a str) -> Result<&'a str> {
     Ok(text)
 }
 
+/// What messages call the file of a system, or its text.
+fn called(path: &Path) -> String {
+    match given_text(path) {
+        Some(_) => "the system".into(),
+        None => path.display().to_string(),
+    }
+}
+
 /// The file, or where there is none of that name the system that is built in; or the text itself.
 fn read(path: &Path) -> Result<SystemFile> {
+    let name = called(path);
     if let Some(text) = given_text(path) {
-        const NAME: &str = "the system";
-        return parsed(NAME, bounded(NAME, text)?);
+        return parsed(&name, bounded(&name, text)?);
     }
-    let name = path.display().to_string();
     if path.exists() {
         return parsed(&name, &read_bounded(path, LONGEST)?);
     }

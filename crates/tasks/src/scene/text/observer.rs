@@ -119,7 +119,7 @@ impl<'a> TextObserver<'a> {
                 true => Vector::from_column_slice(step.y1),
                 false => step.dense(t / units.time),
             };
-            // On a ramp V_H is a state more.
+            // On a ramp V_H is a variable more, and so is time where formulas name it.
             let state = state.iter().take(count).enumerate();
             let state = state.map(|(i, &x)| units.outward_value(i, x));
             TextInstant {

@@ -16,6 +16,9 @@ use twinslip::field::Vector;
 use twinslip::integrate::{Choice, MotionUnits, Tolerances};
 use twinslip::model::TextSystem;
 
+/// When a run begins.
+const BEGIN: f64 = 0.0;
+
 /// A run of a system of one's own, checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TextPlan {
@@ -145,7 +148,10 @@ impl TextPlan {
         let atol_is_given = options.numerics.atol.is_some();
         let units = match atol_is_given || model.slab.is_some() {
             true => MotionUnits::given(start.len()),
-            false => MotionUnits::beginning(&model.system, &start, until)?,
+            false => {
+                let begin = model.at_time(start.clone(), BEGIN);
+                MotionUnits::beginning(&model.system, &begin, until)?
+            }
         };
         Ok(TextPlan {
             program,
@@ -200,7 +206,7 @@ impl TextPlan {
             return program.stretches(driving, self.until, self.model.units());
         }
         let times = || self.nodes.iter().map(|&(time, _)| time);
-        let begins = [0.0].into_iter().chain(times());
+        let begins = [BEGIN].into_iter().chain(times());
         let spans = begins.zip(times().chain([self.until]));
         Ok(spans
             .map(|span| Stretch::new(span, (driving, driving)))
@@ -234,9 +240,13 @@ impl TextPlan {
             }
             None => "off: `estimate_error` is not given".into(),
         };
+        let forced = match self.model.system.is_timed() {
+            true => ", driven by t",
+            false => "",
+        };
         format!(
             "plan of this run
-  dimension         {}: {}
+  dimension         {}: {}{forced}
   method            {}: {}
   tolerances        rtol {:e}, {}, at most {} steps{}
   trajectory        {rows}

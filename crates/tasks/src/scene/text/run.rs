@@ -161,10 +161,10 @@ impl Part<'_> {
         self.stretch.span.0 == self.stretch.span.1
     }
 
-    /// On a ramp V_H is a state more.
+    /// On a ramp V_H is a variable more.
     fn units(&self, of_run: &MotionUnits) -> MotionUnits {
         match self.slides {
-            true => MotionUnits::given(self.system.states().len()),
+            true => MotionUnits::given(self.system.variables()),
             false => of_run.clone(),
         }
     }
@@ -188,9 +188,10 @@ fn along(
             system: &system,
             slides: plan.model.slab.is_some(),
         };
-        if part.system.states().len() > count {
-            here = here.push(stretch.driving.0);
-        }
+        here = match part.system.states().len() > count {
+            true => here.push(stretch.driving.0),
+            false => plan.model.at_time(here, stretch.span.0),
+        };
         let (end, stopped) = by(&part, here)?;
         here = end.rows(0, count).into_owned();
         if stopped {
@@ -288,7 +289,7 @@ fn errors(
             let (next, grown) = growth(&mut integrator, &field, span, &y, by_differences)?;
             outcome.work += integrator.work();
             y = next;
-            // V_H is exact, where it is a state.
+            // V_H and time are exact, where they are variables.
             tangent = grown.view((0, 0), (count, count)) * &tangent;
         }
         Ok((units.outward(&y), false))
