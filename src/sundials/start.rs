@@ -6,7 +6,13 @@ use super::cvode::vector;
 use super::{Cvode, check};
 use crate::contract::Tolerances;
 use crate::error::{Error, Result};
-use crate::field::State;
+use crate::field::{State, VectorField};
+
+/// CVODES's norm is the root of the mean square of all N components. Those that are no variables do not err; with tolerances less by this factor
+/// it is that of the variables.
+pub(crate) fn part_of_mean<const N: usize>(field: &dyn VectorField<N>) -> f64 {
+    (field.dimension() as f64 / N as f64).sqrt()
+}
 
 impl<const N: usize> Cvode<N> {
     /// Begins at `y0`, without sensitivities. Forgets everything before but the settings.
@@ -48,21 +54,23 @@ impl<const N: usize> Cvode<N> {
         Ok(())
     }
 
-    /// What a step may err in each variable, where that is not the same for all ([`crate::field::VectorField::absolute_tolerances`]).
+    /// What a step may err in each variable, where that is not the same for all ([`crate::field::VectorField::absolute_tolerances`]), or where
+    /// there are fewer variables than N.
     pub(super) fn set_absolute_tolerances(&mut self, problem: &Problem<'_, N>) -> Result<()> {
         let Tolerances { rtol, atol, .. } = self.tolerances;
         let each = problem.field.absolute_tolerances(atol);
-        let is_same = each.iter().all(|&one| one == atol);
+        let part = part_of_mean(problem.field);
+        let is_same = part == 1.0 && each.iter().all(|&one| one == atol);
         let m = self.memory.as_ptr();
         if is_same && self.has_vector_tolerances {
             // SAFETY: a live memory.
             unsafe { check!(CV, &self.messages, CVodeSStolerances(m, rtol, atol))? };
         } else if !is_same {
             let mut tolerances = vector::<N>(self.operations, &self.context)?;
-            tolerances.set(&each);
+            tolerances.set(&(each * part));
             let made = tolerances.as_ptr();
             // SAFETY: a live memory, and a vector like the one it was given at first, which CVODES copies.
-            unsafe { check!(CV, &self.messages, CVodeSVtolerances(m, rtol, made))? };
+            unsafe { check!(CV, &self.messages, CVodeSVtolerances(m, rtol * part, made))? };
         }
         self.has_vector_tolerances = !is_same;
         Ok(())

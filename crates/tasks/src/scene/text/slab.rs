@@ -399,7 +399,7 @@ impl TextSlab {
 
 /// How many interfaces there are in each cluster: one, where the options say nothing of clusters.
 fn counts(options: &SlabOptions) -> Result<Vec<usize>> {
-    const MOST: usize = TextSystem::LARGEST - 1;
+    const MOST: usize = 7;
     let interfaces = options.count();
     let Some(text) = &options.clusters else {
         return match interfaces {
