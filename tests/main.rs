@@ -66,6 +66,7 @@ mod kernels;
 mod lanes;
 mod law_bifurcations;
 mod law_parameters;
+mod lorenz_96;
 mod lyapunov;
 mod many;
 mod many_dimensions;
