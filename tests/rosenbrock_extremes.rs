@@ -145,6 +145,7 @@ impl<const N: usize> VectorField<N> for Decay {
 #[test]
 fn what_the_stack_cannot_hold_is_refused() {
     const MOST: usize = Rosenbrock::<1>::MAX_DIMENSION;
+    const MOST_TANGENT: usize = Rosenbrock::<1>::MAX_TANGENT_DIMENSION;
     let tolerances = Tolerances::equal(1e-6).unwrap();
     for method in RosenbrockMethod::ALL {
         let refused = Rosenbrock::<400>::new(method, tolerances, LIMIT);
@@ -152,6 +153,9 @@ fn what_the_stack_cannot_hold_is_refused() {
         let mut rosenbrock = Rosenbrock::<MOST>::new(method, tolerances, LIMIT).unwrap();
         let end = rosenbrock.flow(&Decay, (0.0, 1.0), &State::repeat(1.0), None);
         assert!((end.unwrap()[MOST - 1] - (-1.0_f64).exp()).abs() < 1e-4);
+        let refused = rosenbrock.tangent_flow(&Decay, (0.0, 1.0), &State::repeat(1.0));
+        assert!(refused.is_err_and(|error| error.is_input()));
+        let mut rosenbrock = Rosenbrock::<MOST_TANGENT>::new(method, tolerances, LIMIT).unwrap();
         let (_, tangent) = rosenbrock
             .tangent_flow(&Decay, (0.0, 1.0), &State::repeat(1.0))
             .unwrap();

@@ -136,6 +136,8 @@ pub struct Rosenbrock<const N: usize> {
 impl<const N: usize> Rosenbrock<N> {
     /// The most dimensions: a dozen matrices stand on the stack, and all of them fit in that of any thread.
     pub const MAX_DIMENSION: usize = 100;
+    /// The most dimensions of a tangent flow, which has several times as many matrices.
+    pub const MAX_TANGENT_DIMENSION: usize = 24;
 
     /// With a bound on the steps of one call, refused ones included.
     ///
@@ -299,6 +301,13 @@ impl<const N: usize> Integrator<N> for Rosenbrock<N> {
     ) -> Result<(State<N>, Jacobian<N>)> {
         self.work = Work::default();
         check_times(t)?;
+        if N > Self::MAX_TANGENT_DIMENSION {
+            return Err(Error::parameter(
+                "the dimension",
+                N,
+                "at most 24 for the tangent flow of a Rosenbrock method, whose matrices stand on the stack",
+            ));
+        }
         if const { N > SMALL } {
             return self.tangent_flow_of_many(field, t, y0);
         }
