@@ -71,6 +71,7 @@ mod many;
 mod many_dimensions;
 mod many_equilibria;
 mod many_methods;
+mod many_variables;
 mod multiple_points;
 mod normal_forms_of_systems;
 mod numbers;

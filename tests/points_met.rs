@@ -135,6 +135,36 @@ fn a_branch_ends_at_the_period_of_a_stiff_orbit() {
     assert!(off < 1e-10 * known, "{off}");
 }
 
+/// A jump that takes a part of 1e-12 of the period: no node of the branch stands in it, or next to it. References: Radau's method of order 5 on pieces
+/// that end ever nearer to the jump, rtol 1e-12, in SciPy.
+#[test]
+fn branches_of_relaxation_oscillations_go_far() {
+    let file = "tests/data/cases/brusselator-stiff.toml";
+    for (end, known, few) in [
+        ("100", 2_569.880_157_013, 60),
+        ("400", 40_293.870_346_30, 70),
+        ("900", 203_178.438_151_15, 100),
+    ] {
+        let text = format!(
+            "branch orbits --system {file} --along B --from 1.5 --to {end} --format json -q"
+        );
+        let ended = command::twinslip(&text);
+        assert_eq!(ended.code, 0, "{end}: {}", ended.err);
+        let made: Value = serde_json::from_str(&ended.out).expect("JSON");
+        let result = &made["result"];
+        assert!(
+            result["rows"].as_array().expect("rows").len() < few,
+            "{end}"
+        );
+        let period = number(&made, "/result/special/1/period/value");
+        let off = number(&made, "/result/special/1/period/uncertainty");
+        assert!(off < 1e-8 * period, "{period} ± {off}");
+        // What SciPy errs by is a few parts of 1e12.
+        let told = off + 1e-11 * period;
+        assert!((period - known).abs() <= told, "{period} ± {off}");
+    }
+}
+
 #[test]
 fn numbers_may_have_both_signs() {
     let text =

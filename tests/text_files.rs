@@ -177,7 +177,7 @@ fn mistakes_are_told_by_line_and_column() {
         ),
         (
             changed("[\"x\", \"y\", \"z\"]", "[]"),
-            "2:10: there are 0 states, but there must be 1 to 8",
+            "2:10: there are 0 states, but there must be 1 to 100",
         ),
         (
             changed("[\"x\", \"y\", \"z\"]", "\"x\""),

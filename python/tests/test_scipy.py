@@ -459,7 +459,7 @@ WRONG: list[tuple[dict[str, Any], str, str]] = [
     ({"fun": lambda t, y: [np.inf]}, "fun", "finite"),
     ({"y0": [1 + 1j]}, "y0", "must be real: write the real and imaginary parts of complex values as two states"),
     ({"y0": [np.nan]}, "y0", "All components of the initial state `y0` must be finite."),
-    ({"y0": np.ones(9)}, "y0", "1 to 8"),
+    ({"y0": np.ones(101)}, "y0", "1 to 100"),
     ({"y0": np.ones(8), "fun": lambda t, y: t * y}, "y0", "1 to 7"),
     ({"t_span": (0, np.nan)}, "t_span", "finite"),
     ({"t_span": (np.inf, 0)}, "t_span", "finite"),

@@ -97,7 +97,7 @@ def system_text(
         nor do the functions of ``math``. A power whose exponent is no whole number, or is a
         parameter, needs a positive base.
     states : sequence of str
-        The names of 1 to 8 states.
+        The names of 1 to 100 states.
     parameters : mapping of str to float, optional
         The names and values of the parameters.
     name : str, optional

@@ -57,7 +57,7 @@ def solve_ivp(
     Parameters
     ----------
     fun : callable or System
-        ``fun(t, y, *args)`` gives the rates of 1 to 8 values, as in SciPy. It is called once, with
+        ``fun(t, y, *args)`` gives the rates of 1 to 100 values, as in SciPy. It is called once, with
         symbols, and again wherever one of its comparisons changes: arithmetic, numpy's functions
         of each element and those of ``math``, indexing, slices, loops, arrays, ``np.where`` and
         ``if`` go, steps such as ``t % 1`` too. Runs end and begin again where a comparison

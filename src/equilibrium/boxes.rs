@@ -50,8 +50,9 @@ pub struct ZerosInBox {
     pub undecided: Vec<IntervalBox>,
 }
 
-/// Boxes that are looked at, at most: some seconds of work.
+/// Boxes that are looked at, at most: some seconds of work. It grows with the cube of the number of variables, beyond these.
 const MOST: usize = 300_000;
+const FEW: usize = 8;
 /// A box is cut here, and not in its middle, where zeros often lie.
 const CUT: f64 = 0.4871;
 /// A box narrower than this, in units of 1 + |x|, is not cut.
@@ -69,10 +70,12 @@ pub fn zeros_in_box(equations: &dyn Enclosed, all: &[Interval]) -> ZerosInBox {
         .collect();
     let mut open: Vec<IntervalBox> = vec![all.to_vec()];
     let (mut zeros, mut undecided): (Vec<IsolatedZero>, Vec<IntervalBox>) = Default::default();
+    let times = all.len().max(FEW) as f64 / FEW as f64;
+    let most = (MOST as f64 / times.powi(3)) as usize;
     let mut looked = 0;
     while let Some(part) = open.pop() {
         looked += 1;
-        if looked > MOST {
+        if looked > most {
             join(&mut undecided, part);
             continue;
         }

@@ -63,10 +63,11 @@ impl<'a> AnyField<'a> {
     /// # Errors
     /// [`Error::Parameter`] where it has more variables than [`TextSystem::LARGEST`].
     pub fn of_text(system: Cow<'a, TextSystem>) -> Result<Self> {
+        // The methods are compiled for these numbers of variables; others have room left.
         macro_rules! by_dimension {
             ($($n:literal)*) => {
                 match system.variables() {
-                    $( $n => Ok(AnyField::new::<$n>(Box::new(TextField::of(system)?))), )*
+                    $( ..=$n => Ok(AnyField::new::<$n>(Box::new(TextField::of(system)?))), )*
                     more => {
                         let must = format!("from 1 to {}", TextSystem::LARGEST);
                         Err(Error::parameter("the number of variables", more, must))
@@ -74,7 +75,7 @@ impl<'a> AnyField<'a> {
                 }
             };
         }
-        by_dimension!(1 2 3 4 5 6 7 8)
+        by_dimension!(1 2 3 4 6 8 32 100)
     }
 
     /// The number of its variables.

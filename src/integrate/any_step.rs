@@ -2,7 +2,7 @@
 
 use super::{Control, Step};
 use crate::error::Result;
-use crate::field::{Vector, vector};
+use crate::field::Vector;
 use crate::number::{DoubleDouble, polynomial::Crossing};
 use crate::series::{Expansion, Passage, Section, Zeros};
 
@@ -28,18 +28,19 @@ pub struct AnyStep<'a> {
 }
 
 impl<'a> AnyStep<'a> {
-    /// What `see` makes of a step of a field whose dimension the compiler knows.
+    /// What `see` makes of a step of a field whose dimension the compiler knows, and so many of its components are variables.
     pub(crate) fn of<const N: usize, T>(
         step: &Step<'_, N>,
+        variables: usize,
         see: impl FnOnce(&AnyStep<'_>) -> T,
     ) -> T {
         see(&AnyStep {
             t0: step.t0,
-            y0: step.y0.as_slice(),
+            y0: &step.y0.as_slice()[..variables],
             t1: step.t1,
-            y1: step.y1.as_slice(),
+            y1: &step.y1.as_slice()[..variables],
             reach: step.reach,
-            dense: &|t| vector(&(step.dense)(t)),
+            dense: &|t| Vector::from_column_slice(&(step.dense)(t).as_slice()[..variables]),
             series: &|| step.series().map(|series| series as &dyn StepSeries),
         })
     }
@@ -125,7 +126,8 @@ impl<const N: usize> StepSeries for Expansion<N> {
     }
 
     fn state_of(&self, variables: &[f64]) -> Vector {
-        Vector::from_row_slice(&(self.chart)(std::array::from_fn(|i| variables[i])))
+        let all = std::array::from_fn(|i| variables.get(i).copied().unwrap_or_default());
+        Vector::from_row_slice(&(self.chart)(all)[..variables.len()])
     }
 
     fn crossings(

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::field::{Jacobian, State, VectorField, checked_places};
 use crate::sundials::{
     Cvode, ErrorControl, Mode, MultistepMethod, Operations, Problem, Reason, Sensitivity,
-    SensitivityMethod,
+    SensitivityMethod, part_of_mean,
 };
 use std::cell::RefCell;
 
@@ -49,6 +49,7 @@ fn clock(t: (f64, f64)) -> (f64, f64) {
 pub struct CvodeIntegrator<const N: usize> {
     solver: Cvode<N>,
     method: MultistepMethod,
+    tolerances: Tolerances,
     max_steps: usize,
     work: Work,
 }
@@ -66,6 +67,7 @@ impl<const N: usize> CvodeIntegrator<N> {
         Ok(CvodeIntegrator {
             solver,
             method,
+            tolerances,
             max_steps,
             work: Work::default(),
         })
@@ -247,24 +249,28 @@ impl<const N: usize> CvodeIntegrator<N> {
     ) -> Result<(State<N>, Jacobian<N>, Vec<State<N>>)> {
         checked_places(field, free)?;
         self.work = Work::default();
-        let mut columns: Vec<State<N>> = Jacobian::<N>::identity()
-            .column_iter()
-            .map(|column| column.into_owned())
-            .collect();
-        columns.resize(N + free.len(), State::zeros());
+        let n = field.dimension();
+        let unit = |j: usize| State::from_fn(|i, _| f64::from(u8::from(i == j)));
+        let mut columns: Vec<State<N>> = (0..n).map(unit).collect();
+        columns.resize(n + free.len(), State::zeros());
+        let part = part_of_mean(field);
         let settings = Sensitivity {
             scheme: SensitivityMethod::Simultaneous,
-            tolerances: None,
+            tolerances: (part != 1.0).then_some(Tolerances {
+                rtol: part * self.tolerances.rtol,
+                atol: part * self.tolerances.atol,
+                ..self.tolerances
+            }),
             error_control: ErrorControl::Full,
         };
         let clock = clock(t);
         self.solver
             .start_with_sensitivities(clock.0, y0, &columns, &settings)?;
         if t.0 == t.1 {
-            return Ok((*y0, Jacobian::identity(), columns.split_off(N)));
+            return Ok((*y0, Jacobian::identity(), columns.split_off(n)));
         }
         let forcing =
-            |column: usize, y: &State<N>| match (column.checked_sub(N), field.parametrised()) {
+            |column: usize, y: &State<N>| match (column.checked_sub(n), field.parametrised()) {
                 (Some(i), Some(field)) => field.parameter_derivative(y, free[i]),
                 _ => State::zeros(),
             };
@@ -278,7 +284,8 @@ impl<const N: usize> CvodeIntegrator<N> {
         self.record();
         ended?;
         let mut columns = self.solver.sensitivities()?;
-        let in_parameters = columns.split_off(N);
+        let in_parameters = columns.split_off(n);
+        columns.resize_with(N, State::zeros);
         Ok((
             self.solver.state(),
             Jacobian::from_columns(&columns),

@@ -5,7 +5,7 @@ use super::any_integrator::{AnyIntegrator, FlowDerivatives, Method};
 use super::any_step::{AnyObserver, AnyStep};
 use super::{Control, Integrator, Observer, Radau, Step, Taylor, Work};
 use crate::error::{Error, Result};
-use crate::field::{ExactField, Jacobian, Matrix, State, Vector, VectorField, state, vector};
+use crate::field::{ExactField, Jacobian, Matrix, State, Vector, VectorField, state};
 use crate::series::{Jet3, Tangent};
 
 /// What a field of a dimension that the compiler knows does for one of any.
@@ -41,25 +41,29 @@ pub(super) trait Flows: Send + Sync {
     ) -> Result<(Jet3, Vec<Jet3>)>;
 }
 
-/// The solution of A x = b by elimination with partial pivoting: runs ask for it so often that it shall not allocate.
-fn solve<const N: usize>(mut a: Jacobian<N>, mut b: State<N>) -> Option<State<N>> {
-    for k in 0..N {
-        let pivot = (k..N).max_by(|&i, &j| a[(i, k)].abs().total_cmp(&a[(j, k)].abs()))?;
+/// The solution of A x = b in the variables by elimination with partial pivoting: runs ask for it so often that it shall not allocate.
+fn solve<const N: usize>(
+    variables: usize,
+    mut a: Jacobian<N>,
+    mut b: State<N>,
+) -> Option<State<N>> {
+    for k in 0..variables {
+        let pivot = (k..variables).max_by(|&i, &j| a[(i, k)].abs().total_cmp(&a[(j, k)].abs()))?;
         if a[(pivot, k)] == 0.0 {
             return None;
         }
         a.swap_rows(k, pivot);
         b.swap_rows(k, pivot);
-        for i in k + 1..N {
+        for i in k + 1..variables {
             let factor = a[(i, k)] / a[(k, k)];
-            for j in k..N {
+            for j in k..variables {
                 a[(i, j)] -= factor * a[(k, j)];
             }
             b[i] -= factor * b[k];
         }
     }
-    for k in (0..N).rev() {
-        for j in k + 1..N {
+    for k in (0..variables).rev() {
+        for j in k + 1..variables {
             b[k] -= a[(k, j)] * b[j];
         }
         b[k] /= a[(k, k)];
@@ -67,7 +71,7 @@ fn solve<const N: usize>(mut a: Jacobian<N>, mut b: State<N>) -> Option<State<N>
     Some(b)
 }
 
-/// A field of N variables.
+/// A field of N variables, or of fewer ([`VectorField::dimension`]): what goes out of here has the variables alone.
 pub(super) enum Static<'a, const N: usize> {
     Owned(Box<dyn VectorField<N> + 'a>),
     Lent(&'a dyn VectorField<N>),
@@ -80,6 +84,23 @@ impl<const N: usize> Static<'_, N> {
             Static::Lent(field) => *field,
         }
     }
+
+    fn state(&self, y: &[f64]) -> State<N> {
+        assert_eq!(
+            y.len(),
+            self.field().dimension(),
+            "a number for each variable"
+        );
+        state(y)
+    }
+
+    fn vector(&self, y: &State<N>) -> Vector {
+        vector(self.field(), y)
+    }
+}
+
+fn vector<const N: usize>(field: &dyn VectorField<N>, y: &State<N>) -> Vector {
+    Vector::from_column_slice(&y.as_slice()[..field.dimension()])
 }
 
 /// Below this a factor of its own rate is about to lose its digits: the least double is no longer a rounding error of it.
@@ -105,7 +126,7 @@ impl<const N: usize> Sinking<N> {
 
     fn see(&mut self, field: &dyn VectorField<N>, step: &Step<'_, N>) -> Result<()> {
         let mut rates: Option<[State<N>; 3]> = None;
-        for variable in (0..N).filter(|&i| self.own[i]) {
+        for variable in (0..field.dimension()).filter(|&i| self.own[i]) {
             let is_below = step.y1[variable].abs() < f64::MIN_POSITIVE;
             let Some(below) = &mut self.below[variable] else {
                 self.below[variable] = (is_below && step.y0[variable] != 0.0).then_some(0.0);
@@ -129,51 +150,51 @@ impl<const N: usize> Sinking<N> {
     }
 }
 
-fn matrix<const N: usize>(m: &Jacobian<N>) -> Matrix {
-    Matrix::from_column_slice(N, N, m.as_slice())
+fn matrix<const N: usize>(field: &dyn VectorField<N>, m: &Jacobian<N>) -> Matrix {
+    let n = field.dimension();
+    Matrix::from_fn(n, n, |i, j| m[(i, j)])
 }
 
 impl<const N: usize> Flows for Static<'_, N> {
     fn dimension(&self) -> usize {
-        N
+        self.field().dimension()
     }
 
     fn f(&self, y: &[f64]) -> Vector {
-        vector(&self.field().f(&state(y)))
+        self.vector(&self.field().f(&self.state(y)))
     }
 
     fn jacobian(&self, y: &[f64]) -> Matrix {
-        matrix(&self.field().jacobian(&state(y)))
+        matrix(self.field(), &self.field().jacobian(&self.state(y)))
     }
 
     fn exact(&self, y: &[f64]) -> AnyExact {
-        let (field, y) = (self.field(), state(y));
+        let (field, y) = (self.field(), self.state(y));
         let exact = field.exact(&y).unwrap_or_else(|| ExactField {
             f: [field.f(&y), State::zeros()],
             jacobian: [field.jacobian(&y), Jacobian::zeros()],
         });
         AnyExact {
-            f: exact.f.map(|f| vector(&f)),
-            jacobian: exact.jacobian.map(|jacobian| matrix(&jacobian)),
+            f: exact.f.map(|f| vector(field, &f)),
+            jacobian: exact.jacobian.map(|jacobian| matrix(field, &jacobian)),
         }
     }
 
     fn trace(&self, y: &[f64]) -> f64 {
-        self.field().jacobian(&state(y)).trace()
+        self.field().jacobian(&self.state(y)).trace()
     }
 
     fn newton_step(&self, y: &[f64]) -> Option<Vector> {
-        let y = state(y);
-        let step = solve(self.field().jacobian(&y), self.field().f(&y))?;
-        step.iter().all(|x| x.is_finite()).then(|| vector(&step))
+        let (field, y) = (self.field(), self.state(y));
+        let step = solve(field.dimension(), field.jacobian(&y), field.f(&y))?;
+        step.iter()
+            .all(|x| x.is_finite())
+            .then(|| vector(field, &step))
     }
 
     fn second_derivative(&self, [y, u, v]: [&[f64]; 3]) -> Vector {
-        vector(
-            &self
-                .field()
-                .second_derivative(&state(y), &state(u), &state(v)),
-        )
+        let [y, u, v] = [y, u, v].map(|x| self.state(x));
+        self.vector(&self.field().second_derivative(&y, &u, &v))
     }
 
     fn parameter_names(&self) -> &[&'static str] {
@@ -188,7 +209,7 @@ impl<const N: usize> Flows for Static<'_, N> {
             .field()
             .parametrised()
             .expect("a field with parameters");
-        vector(&field.parameter_derivative(&state(y), place))
+        self.vector(&field.parameter_derivative(&self.state(y), place))
     }
 
     fn parameter_jacobian(&self, y: &[f64], place: usize) -> Matrix {
@@ -196,7 +217,10 @@ impl<const N: usize> Flows for Static<'_, N> {
             .field()
             .parametrised()
             .expect("a field with parameters");
-        matrix(&field.parameter_jacobian(&state(y), place))
+        matrix(
+            self.field(),
+            &field.parameter_jacobian(&self.state(y), place),
+        )
     }
 
     fn flow(
@@ -209,11 +233,11 @@ impl<const N: usize> Flows for Static<'_, N> {
         let mut run = |observer: Option<Observer<'_, N>>| -> (Result<State<N>>, Work) {
             match &mut by.method {
                 Method::Taylor(taylor) => {
-                    let end = taylor.flow(self.field(), t, &state(y0), observer);
+                    let end = taylor.flow(self.field(), t, &self.state(y0), observer);
                     (end, Integrator::<N>::work(taylor))
                 }
                 Method::Radau(radau) => {
-                    let end = radau.flow(self.field(), t, &state(y0), observer);
+                    let end = radau.flow(self.field(), t, &self.state(y0), observer);
                     (end, Integrator::<N>::work(radau))
                 }
                 Method::Other {
@@ -222,23 +246,24 @@ impl<const N: usize> Flows for Static<'_, N> {
                     max_steps,
                 } => match choice.integrator::<N>(*tolerances, *max_steps) {
                     Ok(mut method) => {
-                        let end = method.flow(self.field(), t, &state(y0), observer);
+                        let end = method.flow(self.field(), t, &self.state(y0), observer);
                         (end, method.work())
                     }
                     Err(error) => (Err(error), Work::default()),
                 },
             }
         };
+        let variables = self.dimension();
         let mut sinking = Sinking::of(self.field());
         let (end, work) = match (observer, &mut sinking) {
             (None, None) => run(None),
             (Some(observer), None) => run(Some(&mut |step: &Step<'_, N>| {
-                AnyStep::of(step, &mut *observer)
+                AnyStep::of(step, variables, &mut *observer)
             })),
             (mut observer, Some(sinking)) => run(Some(&mut |step: &Step<'_, N>| {
                 sinking.see(self.field(), step)?;
                 let told = match &mut observer {
-                    Some(observer) => AnyStep::of(step, &mut **observer)?,
+                    Some(observer) => AnyStep::of(step, variables, &mut **observer)?,
                     None => Control::Continue,
                 };
                 // Every step is to be seen.
@@ -249,7 +274,7 @@ impl<const N: usize> Flows for Static<'_, N> {
             })),
         };
         by.work = work;
-        Ok(vector(&end?))
+        Ok(self.vector(&end?))
     }
 
     fn arcs<'f>(
@@ -284,10 +309,10 @@ impl<const N: usize> Flows for Static<'_, N> {
         start: &[Jet3],
         (normal, point): (&[f64], &[f64]),
     ) -> Result<(Jet3, Vec<Jet3>)> {
-        let start = std::array::from_fn(|i| start[i]);
-        let plane = (&state(normal), &state(point));
+        let start = std::array::from_fn(|i| start.get(i).copied().unwrap_or_default());
+        let plane = (&self.state(normal), &self.state(point));
         let (time, end) = taylor.transport_onto::<N>(self.field(), span, start, plane)?;
-        Ok((time, end.to_vec()))
+        Ok((time, end[..self.dimension()].to_vec()))
     }
 }
 
@@ -314,6 +339,7 @@ enum Tangents<'f, const N: usize> {
 impl<const N: usize> ArcByArc for StaticArcs<'_, N> {
     fn derivatives(&mut self, t: (f64, f64), y0: &[f64]) -> Result<(Vector, FlowDerivatives)> {
         let (field, start) = (self.field, state(y0));
+        let n = field.dimension();
         match &mut self.tangents {
             Tangents::Series(taylor, tangent) => {
                 let made = taylor.derivatives_by(&mut **tangent, field, t, &start);
@@ -322,20 +348,20 @@ impl<const N: usize> ArcByArc for StaticArcs<'_, N> {
                 let (end, made) = made?;
                 let columns = &made.parameters;
                 let derivatives = FlowDerivatives {
-                    start: Matrix::from_column_slice(N, N, made.start.as_flattened()),
-                    parameters: Matrix::from_column_slice(N, columns.len(), columns.as_flattened()),
+                    start: Matrix::from_fn(n, n, |i, j| made.start[j][i]),
+                    parameters: Matrix::from_fn(n, columns.len(), |i, j| columns[j][i]),
                     log_determinant: Some(made.log_determinant),
                     log_transverse: made.log_transverse,
                 };
-                Ok((vector(&end), derivatives))
+                Ok((vector(field, &end), derivatives))
             }
             Tangents::Radau(method, free) => {
                 let made = method.derivatives(field, t, &start, free);
                 *self.work = Integrator::<N>::work(*method);
                 let (end, columns, volume) = made?;
                 let derivatives = FlowDerivatives {
-                    start: columns.columns(0, N).into_owned(),
-                    parameters: columns.columns_range(N..).into_owned(),
+                    start: columns.columns(0, n).into_owned(),
+                    parameters: columns.columns_range(n..).into_owned(),
                     log_determinant: Some(volume),
                     log_transverse: None,
                 };
@@ -346,12 +372,12 @@ impl<const N: usize> ArcByArc for StaticArcs<'_, N> {
                 *self.work = method.work();
                 let (end, tangent) = made?;
                 let derivatives = FlowDerivatives {
-                    start: matrix(&tangent),
-                    parameters: Matrix::zeros(N, 0),
+                    start: matrix(field, &tangent),
+                    parameters: Matrix::zeros(n, 0),
                     log_determinant: None,
                     log_transverse: None,
                 };
-                Ok((vector(&end), derivatives))
+                Ok((vector(field, &end), derivatives))
             }
         }
     }

@@ -437,7 +437,7 @@ fn frames_of(
 }
 
 /// The columns of a frame that span the plane.
-fn axes(frame: &Matrix) -> DMatrixView<'_, f64> {
+pub(super) fn axes(frame: &Matrix) -> DMatrixView<'_, f64> {
     frame.columns(1, frame.ncols() - 1)
 }
 

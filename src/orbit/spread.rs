@@ -4,6 +4,7 @@
 //! displacement there is no small one of the orbit. The corner itself moves when the parameters change, and comes to a node next to it.
 
 use super::arc::Tracer;
+use super::linear::{axes, frame};
 use super::shooting_nodes::ShootingNodes;
 use crate::error::{Error, Result};
 use crate::field::Vector;
@@ -67,7 +68,7 @@ const CORNER: f64 = 0.1;
 /// In extents per period. Along faster motions rounding of the time is seen in the state: their way counts no more than at this speed.
 const FASTEST: f64 = 1e6;
 /// A node is left out rather than to stand so many times nearer to a corner, or where the motion is so many times faster.
-const NO_PLACE: f64 = 30.0;
+const NO_PLACE: f64 = 10.0;
 /// A variable that moves by less than this part of what the liveliest does, both in the units of the motion, may move by any factor more.
 const STILL_BESIDE: f64 = 1e-4;
 /// How far a node may stand from where it would by the measure alone, in parts of an arc.
@@ -166,7 +167,7 @@ impl ShootingNodes {
         field: &AnyField<'_>,
         spread: Spread,
     ) -> Result<(Self, f64)> {
-        let steps = self.traced(tracer, field)?;
+        let steps = self.traced(tracer, field, spread.jumps)?;
         let period = self.period();
         let extents = Extents::of(
             steps.iter().map(|step| &step.from),
@@ -275,7 +276,12 @@ impl ShootingNodes {
     }
 
     /// All steps once around, none across a node.
-    fn traced(&self, tracer: &mut Tracer, field: &AnyField<'_>) -> Result<Vec<TracedStep>> {
+    fn traced(
+        &self,
+        tracer: &mut Tracer,
+        field: &AnyField<'_>,
+        jumps: bool,
+    ) -> Result<Vec<TracedStep>> {
         let (mut steps, mut begin) = (Vec::new(), 0.0);
         for (start, &duration) in self.nodes.iter().zip(&self.durations) {
             let mut trace = field.trace(start.as_slice()).abs();
@@ -286,7 +292,7 @@ impl ShootingNodes {
                 steps.push(TracedStep {
                     begin: begin + step.t0,
                     length,
-                    growth: growth_rate(field, &from) * length,
+                    growth: growth_rate(field, &from, jumps) * length,
                     from: std::mem::replace(&mut from, Vector::from_column_slice(step.y1)),
                     volume: 0.5 * (trace + next) * length,
                 });
@@ -353,8 +359,13 @@ pub(super) fn extents<'a>(points: impl Iterator<Item = &'a Vector> + Clone) -> V
     extents.map(|extent| extent.max(least))
 }
 
-/// How fast a displacement of this point grows, if any does.
-fn growth_rate(field: &AnyField<'_>, x: &Vector) -> f64 {
-    let rates = eigenvalues(&field.jacobian(x)).into_iter().flatten();
+/// How fast a displacement of this point grows, if any does. Where orbits jump those across the flow count: along it all grow as it becomes faster.
+fn growth_rate(field: &AnyField<'_>, x: &Vector, jumps: bool) -> f64 {
+    let mut jacobian = field.jacobian(x);
+    if jumps {
+        let frame = frame(&field.f(x));
+        jacobian = axes(&frame).transpose() * jacobian * axes(&frame);
+    }
+    let rates = eigenvalues(&jacobian).into_iter().flatten();
     rates.fold(0.0, |most, rate| f64::max(most, rate.re))
 }

@@ -10,6 +10,8 @@ use crate::number::eigenvalues;
 /// The fastest decay rate, integrated over a period, above which the implicit method takes less time. Stability bounds the product of this rate and
 /// a Taylor step by a few units; a Taylor step takes a hundredth of the time of an implicit one, of which an orbit needs some hundreds.
 const STIFF: f64 = 2e5;
+/// Of the larger rate at the two ends of an arc: at one of them, just behind a fold of a slow manifold, nothing may decay at all.
+const LEAST_DECAY: f64 = 1e-3;
 /// The least tolerance of the implicit method: below it rounding is the larger error.
 const LEAST: f64 = 1e-13;
 
@@ -34,7 +36,8 @@ pub fn method_for(field: &AnyField<'_>, orbit: &ShootingNodes) -> Choice {
     // Of both ends of an arc the mean on a logarithmic scale: what decays fast at a peak does not do so all along the arc.
     let next = decays.iter().cycle().skip(1);
     let arcs = decays.iter().zip(next).zip(&orbit.durations);
-    let all: f64 = arcs.map(|((a, b), t)| (a * b).sqrt() * t.abs()).sum();
+    let mean = |a: f64, b: f64| (a.max(b) * a.min(b).max(LEAST_DECAY * a.max(b))).sqrt();
+    let all: f64 = arcs.map(|((a, b), t)| mean(*a, *b) * t.abs()).sum();
     match all < STIFF {
         true => Choice::Taylor,
         false => Choice::Radau,

@@ -136,7 +136,7 @@ pub struct Cvode<const N: usize> {
     pub(super) messages: Stable<Messages>,
     pub(super) operations: Operations,
     pub(super) tolerances: Tolerances,
-    // Whether CVODES has an absolute tolerance for each variable.
+    // Whether CVODES has a tolerance for each variable instead of those given.
     pub(super) has_vector_tolerances: bool,
     max_steps: usize,
     pub(super) start: f64,

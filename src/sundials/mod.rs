@@ -30,6 +30,7 @@ pub use kinsol::{Constraint, Kinsol, KinsolSettings, KinsolWork, Outcome, Residu
 pub(crate) use large::{LargeCvode, LargeKinsol, LinearTime, Until};
 
 pub use sensitivity::{ErrorControl, Sensitivity, SensitivityMethod};
+pub(crate) use start::part_of_mean;
 
 use crate::error::{Error, Result};
 use std::cell::{Cell, RefCell};

@@ -6,7 +6,14 @@ use super::cvode::vector;
 use super::{Cvode, check};
 use crate::contract::Tolerances;
 use crate::error::{Error, Result};
-use crate::field::State;
+use crate::field::{State, VectorField};
+
+/// CVODES's norm is the root of the mean square of all N components. Those that are no variables do not err, and time is not judged; with
+/// tolerances less by this factor it is that of the others.
+pub(crate) fn part_of_mean<const N: usize>(field: &dyn VectorField<N>) -> f64 {
+    let judged = field.dimension() - usize::from(field.last_is_time());
+    (judged.max(1) as f64 / N as f64).sqrt()
+}
 
 impl<const N: usize> Cvode<N> {
     /// Begins at `y0`, without sensitivities. Forgets everything before but the settings.
@@ -49,24 +56,22 @@ impl<const N: usize> Cvode<N> {
     }
 
     /// What a step may err in each variable, where that is not the same for all ([`crate::field::VectorField::absolute_tolerances`]). CVODES takes the
-    /// root mean square over all variables: those that do not count shall not make it less for the others.
+    /// root mean square over all N: those that do not count, or are no variables, shall not make it less for the others.
     pub(super) fn set_absolute_tolerances(&mut self, problem: &Problem<'_, N>) -> Result<()> {
         let Tolerances { rtol, atol, .. } = self.tolerances;
         let each = problem.field.absolute_tolerances(atol);
-        let is_same = each.iter().all(|&one| one == atol);
+        let part = part_of_mean(problem.field);
+        let is_same = part == 1.0 && each.iter().all(|&one| one == atol);
         let m = self.memory.as_ptr();
         if is_same && self.has_vector_tolerances {
             // SAFETY: a live memory.
             unsafe { check!(CV, &self.messages, CVodeSStolerances(m, rtol, atol))? };
         } else if !is_same {
-            let counted = each.iter().filter(|one| one.is_finite()).count();
-            let part = (counted as f64 / N as f64).sqrt();
-            let rtol = part * rtol;
             let mut tolerances = vector::<N>(self.operations, &self.context)?;
             tolerances.set(&(each * part));
             let made = tolerances.as_ptr();
             // SAFETY: a live memory, and a vector like the one it was given at first, which CVODES copies.
-            unsafe { check!(CV, &self.messages, CVodeSVtolerances(m, rtol, made))? };
+            unsafe { check!(CV, &self.messages, CVodeSVtolerances(m, rtol * part, made))? };
         }
         self.has_vector_tolerances = !is_same;
         Ok(())

@@ -119,7 +119,7 @@ impl SweepRun {
         };
         let go_on = &mut |_: usize, _: Option<&Return>| Control::Continue;
         let recorder = &mut self.recorder;
-        let told = AnyStep::of(step, |step| recorder.step(&watched, step, go_on))?;
+        let told = AnyStep::of(step, 3, |step| recorder.step(&watched, step, go_on))?;
         self.see_stress(step);
         if told == Control::Stop {
             return Ok(told);

@@ -24,12 +24,36 @@ pub fn vector<const N: usize>(y: &State<N>) -> Vector {
     Vector::from_column_slice(y.as_slice())
 }
 
-/// A state whose dimension the compiler does not know, as one whose dimension it does.
+/// A state whose dimension the compiler does not know, as one whose dimension it does; components that are not given are 0.
 ///
 /// # Panics
-/// Where there are not N components.
+/// Where there are more than N components.
+#[inline]
 pub fn state<const N: usize>(y: &[f64]) -> State<N> {
-    State::from_column_slice(y)
+    if y.len() == N {
+        return State::from_column_slice(y);
+    }
+    let mut state = State::<N>::zeros();
+    state.as_mut_slice()[..y.len()].copy_from_slice(y);
+    state
+}
+
+/// A matrix whose dimension the compiler does not know, row by row, as one whose dimension it does; rows and columns that are not given are 0.
+///
+/// # Panics
+/// Where there are more than N rows.
+#[inline]
+pub fn jacobian_of_rows<const N: usize>(variables: usize, rows: &[f64]) -> Jacobian<N> {
+    if variables == N {
+        return Jacobian::from_row_slice(rows);
+    }
+    let mut jacobian = Jacobian::<N>::zeros();
+    for (i, row) in rows.chunks_exact(variables).enumerate() {
+        for (j, &entry) in row.iter().enumerate() {
+            jacobian[(i, j)] = entry;
+        }
+    }
+    jacobian
 }
 
 /// An autonomous system of N ordinary differential equations.
@@ -50,6 +74,12 @@ pub trait VectorField<const N: usize>: Send + Sync {
 
     /// J(y) = Df(y).
     fn jacobian(&self, y: &State<N>) -> Jacobian<N>;
+
+    /// How many of the N components are variables: the first ones. Those after them are 0 and stay so, and nothing depends on them. Where the
+    /// number is known when the program runs, N is the next larger one of those that the methods are compiled for.
+    fn dimension(&self) -> usize {
+        N
+    }
 
     /// D2f(y)[u, v], the second derivative applied to two directions; symmetric in u and v.
     fn second_derivative(&self, y: &State<N>, u: &State<N>, v: &State<N>) -> State<N>;
@@ -80,7 +110,8 @@ pub trait VectorField<const N: usize>: Send + Sync {
     /// rounded, and over a million steps time would be late by more than the tolerance.
     fn timed(&self, mut end: State<N>, begin: &State<N>, h: f64) -> State<N> {
         if self.last_is_time() {
-            end[N - 1] = begin[N - 1] + h;
+            let last = self.dimension() - 1;
+            end[last] = begin[last] + h;
         }
         end
     }
@@ -91,7 +122,7 @@ pub trait VectorField<const N: usize>: Send + Sync {
         let own = |factor| if factor { f64::MIN_POSITIVE } else { atol };
         let mut all = State::from(self.own_factors().map(own));
         if self.last_is_time() {
-            all[N - 1] = f64::INFINITY;
+            all[self.dimension() - 1] = f64::INFINITY;
         }
         all
     }

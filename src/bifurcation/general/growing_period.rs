@@ -62,6 +62,16 @@ impl Periods {
         last.is_some_and(|[a, b]| (b[0] - a[0]).abs() <= self.off())
     }
 
+    /// Whether the last orbit is on the way by which the branch has come: where the way that is left is rounding a step may turn it round.
+    pub fn retrace(&self) -> bool {
+        let Some((&[at, period], before)) = self.0.split_last() else {
+            return false;
+        };
+        let between = |x: f64, a: f64, b: f64| (x - a) * (x - b) <= 0.0;
+        let mut ways = before.windows(2);
+        ways.any(|way| between(at, way[0][0], way[1][0]) && between(period, way[0][1], way[1][1]))
+    }
+
     /// The limit of the coordinate at the end of the branch, whose last orbit this is; `None` where the period does not grow without bound
     /// as far as can be told.
     pub fn limit(&self, branch: &GeneralBranch<'_>, last: &Regular) -> Option<Limit> {

@@ -115,7 +115,8 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         let mut left_out = 0;
         let limit = loop {
             let limit = periods.limit(branch, last);
-            if limit.is_some() || (left_out >= LEFT_OUT && !periods.stay()) {
+            let is_idle = periods.stay() || periods.retrace();
+            if limit.is_some() || (left_out >= LEFT_OUT && !is_idle) {
                 break limit;
             }
             periods.pop();

@@ -6,6 +6,7 @@
 
 use super::chart::Chart;
 use crate::bifurcation::{Label, Special};
+use crate::integrate::Choice;
 use crate::model::{DRIVING, STIFFNESS};
 use crate::number::Uncertain;
 use crate::orbit::{
@@ -48,8 +49,13 @@ pub struct RefinedPoint {
     free: Vec<usize>,
 }
 
-/// Tolerances of the solutions, and the part of their arcs by which the nodes of all but the first are moved.
-const SOLUTIONS: [(f64, f64); 3] = [(1e-16, 0.0), (1e-15, 0.37), (4e-15, 0.71)];
+/// Tolerances of the solutions, by Taylor's method and by an implicit one, which rounds more; and the part of their arcs by which the nodes of all but
+/// the first are moved.
+const SOLUTIONS: [([f64; 2], f64); 3] = [
+    ([1e-16, 1e-13], 0.0),
+    ([1e-15, 2e-13], 0.37),
+    ([4e-15, 4e-13], 0.71),
+];
 /// The solutions' largest difference, and standard deviations of the noise, count so many times.
 const SPREAD: f64 = 2.0;
 const DEVIATIONS: f64 = 3.0;
@@ -67,13 +73,21 @@ pub fn refined(
 ) -> Option<RefinedPoint> {
     let conditions: Vec<_> = meets.iter().map(|exactly| exactly.condition()).collect();
     let mut solutions: Vec<Regular> = Vec::new();
-    for (tolerance, part) in SOLUTIONS {
-        let mut corrector = Corrector::new(family, tolerance).ok()?;
+    for ([explicit, implicit], part) in SOLUTIONS {
+        let mut corrector = Corrector::new(family, explicit).ok()?;
         let begin = solutions.first().map_or(near, |first| &first.site);
         corrector.suit(begin).ok()?;
+        let is_stiff = corrector.tracer.name() == Choice::Radau.name();
+        if is_stiff {
+            corrector = Corrector::new(family, implicit).ok()?;
+            corrector.suit(begin).ok()?;
+        }
         let field = family.field(begin.at);
-        // Few long arcs round least often.
-        let shooting = if solutions.is_empty() {
+        let shooting = if solutions.is_empty() && is_stiff {
+            // The nodes of a branch stand aside of its jumps.
+            begin.shooting.clone()
+        } else if solutions.is_empty() {
+            // Few long arcs round least often.
             begin.shooting.meshed(&mut corrector.tracer, &field).ok()?
         } else {
             let shifted = begin.shooting.shifted(&mut corrector.tracer, &field, part);
@@ -91,7 +105,7 @@ pub fn refined(
         }
     }
     let alone = solutions.len() < SOLUTIONS.len();
-    let mut corrector = Corrector::new(family, SOLUTIONS[0].0).ok()?;
+    let mut corrector = Corrector::new(family, SOLUTIONS[0].0[0]).ok()?;
     let noise = corrector.noise(&solutions[0], free, &conditions);
     let noise = noise.unwrap_or(Noise::UNKNOWN);
     let all = |of: &dyn Fn(&Regular) -> f64, noise: f64, rounding: f64| {

@@ -11,7 +11,9 @@ use super::rosenbrock::control::{self, first_step};
 use super::rosenbrock::drive::drive;
 use super::{Control, Integrator, Observer, Step, Tolerances, Work, step_underflow};
 use crate::error::{Error, Result};
-use crate::field::{Jacobian, Matrix, State, Vector, VectorField, state, vector, with_differences};
+use crate::field::{
+    Jacobian, Matrix, State, Vector, VectorField, jacobian_of_rows, state, with_differences,
+};
 use coefficients::suited;
 use stages::{Derivatives, LastStep, MayErr, StageField, Stages};
 
@@ -51,11 +53,11 @@ struct Of<'a, const N: usize>(&'a dyn VectorField<N>);
 
 impl<const N: usize> StageField for Of<'_, N> {
     fn f(&self, y: &[f64], into: &mut [f64]) {
-        into.copy_from_slice(self.0.f(&state(y)).as_slice());
+        into.copy_from_slice(&self.0.f(&state(y)).as_slice()[..y.len()]);
     }
 
     fn jacobian(&self, y: &[f64], exact: bool, into: &mut Matrix) {
-        let y = state(y);
+        let (n, y) = (y.len(), state(y));
         let made = self.0.jacobian(&y);
         let known = exact || made.iter().all(|x| x.is_finite());
         let made = if known {
@@ -63,12 +65,13 @@ impl<const N: usize> StageField for Of<'_, N> {
         } else {
             with_differences(self.0, &y, made)
         };
-        into.copy_from(&made);
+        into.copy_from(&made.view((0, 0), (n, n)));
     }
 
     fn parameter_derivative(&self, y: &[f64], place: usize, into: &mut [f64]) {
         let field = self.0.parametrised().expect("a field with parameters");
-        into.copy_from_slice(field.parameter_derivative(&state(y), place).as_slice());
+        let made = field.parameter_derivative(&state(y), place);
+        into.copy_from_slice(&made.as_slice()[..y.len()]);
     }
 
     fn underflow(&self, t: f64, h: f64, y: &[f64]) -> Error {
@@ -77,7 +80,7 @@ impl<const N: usize> StageField for Of<'_, N> {
 
     fn timed(&self, end: &mut [f64], begin: &[f64], h: f64) {
         let made = self.0.timed(state(end), &state(begin), h);
-        end.copy_from_slice(made.as_slice());
+        end.copy_from_slice(&made.as_slice()[..end.len()]);
     }
 }
 
@@ -120,8 +123,10 @@ impl Radau {
         }
         let of = Of(field);
         let f = field.f(y0);
-        let mut jacobian = Matrix::zeros(N, N);
-        of.jacobian(y0.as_slice(), free.is_some(), &mut jacobian);
+        let n = field.dimension();
+        let variables = |y: &State<N>| Vector::from_column_slice(&y.as_slice()[..n]);
+        let mut jacobian = Matrix::zeros(n, n);
+        of.jacobian(&y0.as_slice()[..n], free.is_some(), &mut jacobian);
         self.work.rhs += 1;
         self.work.jacobians += 1;
         if !f.iter().chain(jacobian.iter()).all(|x| x.is_finite()) {
@@ -132,10 +137,11 @@ impl Radau {
         }
         let method = suited(self.tolerances.rtol);
         let span = t.1 - t.0;
-        let known = Jacobian::<N>::from_column_slice(jacobian.as_slice());
         let may_err = control::MayErr::new(self.tolerances, field);
         let order = method.stages() as u32;
-        let start = vector(y0);
+        // What it takes for rows are its columns.
+        let known = jacobian_of_rows::<N>(n, jacobian.as_slice()).transpose();
+        let start = variables(y0);
         // The arcs of an orbit come one after the other: a run goes on where the one before has ended.
         let last = self.last.take();
         let last = last.filter(|last| last.is_before(&start, span));
@@ -146,7 +152,7 @@ impl Radau {
         };
         let may_err = MayErr {
             rtol: self.tolerances.rtol,
-            atol: vector(&field.absolute_tolerances(self.tolerances.atol)),
+            atol: variables(&field.absolute_tolerances(self.tolerances.atol)),
             of_tangents: free.map_or(0.0, |(_, tolerance)| tolerance),
         };
         let mut stages = Stages::new(
@@ -154,7 +160,7 @@ impl Radau {
             (may_err, self.tolerances.max_step, observer.is_some()),
             &mut self.work,
             start,
-            (vector(&f), jacobian),
+            (variables(&f), jacobian),
             (free.map(|(places, _)| places), last),
         );
         drive(&mut stages, t, length, self.max_steps, |stages, t0, t1| {
@@ -176,7 +182,7 @@ impl Radau {
         self.last = stages.last.take();
         let none = Derivatives {
             places: &[],
-            columns: Matrix::zeros(N, 0),
+            columns: Matrix::zeros(n, 0),
             volume: 0.0,
         };
         let derivatives = stages.derivatives.take().unwrap_or(none);
@@ -227,7 +233,7 @@ impl<const N: usize> Integrator<N> for Radau {
         let (end, columns, _) = self.run(field, t, y0, Some((&[], rtol.min(atol))), None)?;
         Ok((
             state(end.as_slice()),
-            Jacobian::from_column_slice(columns.as_slice()),
+            jacobian_of_rows::<N>(field.dimension(), columns.as_slice()).transpose(),
         ))
     }
 

@@ -21,13 +21,14 @@ pub(crate) mod stages;
 mod tangent;
 mod trajectory;
 
-use super::tableau::{RODAS4, RODAS5P, ROS23, Tableau};
+use super::tableau::{MAX_STAGES, RODAS4, RODAS5P, ROS23, Tableau};
 use super::{Control, Integrator, Observer, Tolerances, Work};
 use crate::error::{Error, Result};
 use crate::field::{Jacobian, State, VectorField};
 use control::{MayErr, first_step};
 use drive::drive;
-use stages::{Linearisation, Scheme};
+use factors::SMALL;
+use stages::{Linearisation, Scheme, Stages};
 use tangent::Bundle;
 use trajectory::StepState;
 
@@ -134,8 +135,8 @@ pub struct Rosenbrock<const N: usize> {
 
 impl<const N: usize> Rosenbrock<N> {
     /// The most dimensions: a dozen matrices stand on the stack, and all of them fit in that of any thread.
-    pub const MAX_DIMENSION: usize = 96;
-    /// The most dimensions of a tangent flow, whose second derivatives are N^3 numbers, three times.
+    pub const MAX_DIMENSION: usize = 100;
+    /// The most dimensions of a tangent flow, which has several times as many matrices.
     pub const MAX_TANGENT_DIMENSION: usize = 24;
 
     /// With a bound on the steps of one call, refused ones included.
@@ -148,7 +149,7 @@ impl<const N: usize> Rosenbrock<N> {
             return Err(Error::parameter(
                 "the dimension",
                 N,
-                "at most 96 for a Rosenbrock method, whose matrices stand on the stack",
+                "at most 100 for a Rosenbrock method, whose matrices stand on the stack",
             ));
         }
         if max_steps == 0 {
@@ -231,20 +232,35 @@ impl<const N: usize> Rosenbrock<N> {
         Ok(*trajectory.state())
     }
 
+    /// The tangent flow in so many dimensions that its stages fill the stack.
     #[inline(never)]
-    fn tangent_flow_by<S: Scheme>(
+    fn tangent_flow_of_many(
         &mut self,
-        scheme: S,
+        field: &dyn VectorField<N>,
+        t: (f64, f64),
+        y0: &State<N>,
+    ) -> Result<(State<N>, Jacobian<N>)> {
+        let stages = vec![Jacobian::zeros(); MAX_STAGES].into_boxed_slice();
+        let mut stages: Box<Stages<N, N>> = stages.try_into().expect("as many as there are stages");
+        self.tangent_flow_by::<_, 0>((self.method, &mut *stages), field, t, y0)
+    }
+
+    #[inline(never)]
+    fn tangent_flow_by<S: Scheme, const KEPT: usize>(
+        &mut self,
+        (scheme, v): (S, &mut Stages<N, N>),
         field: &dyn VectorField<N>,
         t: (f64, f64),
         y0: &State<N>,
     ) -> Result<(State<N>, Jacobian<N>)> {
         let (here, h) = self.start(field, t, y0, Linearisation::new)?;
-        let mut bundle = Bundle::new(scheme, field, self.tolerances, &mut self.work, *y0, here)
-            .ok_or(Error::NonFinite {
-                what: "the second derivative of the right-hand side",
-                t: t.0,
-            })?;
+        let tolerances = self.tolerances;
+        let bundle =
+            Bundle::<_, N, KEPT>::new((scheme, v), field, tolerances, &mut self.work, *y0, here);
+        let mut bundle = bundle.ok_or(Error::NonFinite {
+            what: "the second derivative of the right-hand side",
+            t: t.0,
+        })?;
         drive(&mut bundle, t, h, self.max_steps, |_, _, _| {
             Ok(Control::Continue)
         })?;
@@ -289,17 +305,28 @@ impl<const N: usize> Integrator<N> for Rosenbrock<N> {
             return Err(Error::parameter(
                 "the dimension",
                 N,
-                "at most 24 for the tangent flow of a Rosenbrock method, whose second derivatives stand on the stack",
+                "at most 24 for the tangent flow of a Rosenbrock method, whose matrices stand on the stack",
             ));
         }
+        if const { N > SMALL } {
+            return self.tangent_flow_of_many(field, t, y0);
+        }
+        let mut stages = [Jacobian::zeros(); MAX_STAGES];
+        let v = &mut stages;
         if const { written_out(N) } {
             match self.method {
-                RosenbrockMethod::Rodas5P => self.tangent_flow_by(Compiled::<0>, field, t, y0),
-                RosenbrockMethod::Rodas4 => self.tangent_flow_by(Compiled::<1>, field, t, y0),
-                RosenbrockMethod::Ros23 => self.tangent_flow_by(Compiled::<2>, field, t, y0),
+                RosenbrockMethod::Rodas5P => {
+                    self.tangent_flow_by::<_, N>((Compiled::<0>, v), field, t, y0)
+                }
+                RosenbrockMethod::Rodas4 => {
+                    self.tangent_flow_by::<_, N>((Compiled::<1>, v), field, t, y0)
+                }
+                RosenbrockMethod::Ros23 => {
+                    self.tangent_flow_by::<_, N>((Compiled::<2>, v), field, t, y0)
+                }
             }
         } else {
-            self.tangent_flow_by(self.method, field, t, y0)
+            self.tangent_flow_by::<_, N>((self.method, v), field, t, y0)
         }
     }
 

@@ -7,30 +7,32 @@
 //!
 //! That is the method applied to the extended system, exactly: the tangent has the method's order. Every entry of Y is in
 //! the error test; scaled by columns or by the whole matrix the work at equal error was the same.
+//!
+//! In few dimensions all of D2f is made once in a step. In many that is more work than D2f[., u_i] at every stage, and more than the stack holds.
 
 use super::control::{MayErr, error_norm};
 use super::drive::Steppable;
-use super::factors::Factors;
+use super::factors::{Factors, SMALL};
 use super::stages::{Linearisation, Scheme, Staged, Stages, combination, error_order};
 use crate::error::Error;
 use crate::field::{Jacobian, State, VectorField};
 use crate::integrate::tableau::{MAX_STAGES, Tableau};
 use crate::integrate::{Tolerances, Work, step_underflow};
 
-/// f, J, and D2f(y)[e_b, .] for every b at one state.
+/// f, J, and D2f(y)[e_b, .] for every b at one state, as far as there is room for it: for all b or none.
 #[derive(Debug, Clone, Copy)]
-struct SecondDerivatives<const N: usize> {
+struct SecondDerivatives<const N: usize, const KEPT: usize> {
     linear: Linearisation<N>,
-    quadratic: [Jacobian<N>; N],
+    quadratic: [Jacobian<N>; KEPT],
 }
 
-impl<const N: usize> SecondDerivatives<N> {
+impl<const N: usize, const KEPT: usize> SecondDerivatives<N, KEPT> {
     /// `None` if something is not finite. All of D2f is evaluated once: it serves all stages and columns.
     #[inline]
     fn new(field: &dyn VectorField<N>, y: &State<N>, linear: Linearisation<N>) -> Option<Self> {
-        let mut quadratic = [Jacobian::<N>::zeros(); N];
+        let mut quadratic = [Jacobian::<N>::zeros(); KEPT];
         let mut finite = true;
-        for a in 0..N {
+        for a in 0..KEPT {
             for b in 0..=a {
                 let d2 = field.second_derivative(y, &unit(a), &unit(b));
                 finite &= d2.iter().all(|x| x.is_finite());
@@ -43,9 +45,15 @@ impl<const N: usize> SecondDerivatives<N> {
 
     /// D2f(y)[u, .]
     #[inline]
-    fn along(&self, u: &State<N>) -> Jacobian<N> {
-        let mut sum = Jacobian::zeros();
-        for b in 0..N {
+    fn along(&self, field: &dyn VectorField<N>, y: &State<N>, u: &State<N>) -> Jacobian<N> {
+        let mut sum = Jacobian::<N>::zeros();
+        if KEPT < N {
+            for b in 0..field.dimension() {
+                sum.set_column(b, &field.second_derivative(y, u, &unit(b)));
+            }
+            return sum;
+        }
+        for b in 0..KEPT {
             sum += self.quadratic[b] * u[b];
         }
         sum
@@ -59,11 +67,11 @@ fn unit<const N: usize>(i: usize) -> State<N> {
 }
 
 /// A step in the making.
-struct TangentStepping<'a, const N: usize> {
+struct TangentStepping<'a, const N: usize, const KEPT: usize> {
     field: &'a dyn VectorField<N>,
     y: &'a State<N>,
     tangent: &'a Jacobian<N>,
-    here: &'a SecondDerivatives<N>,
+    here: &'a SecondDerivatives<N, KEPT>,
     factors: Factors<N>,
     per_h: f64,
     u: &'a mut Stages<N, 1>,
@@ -72,7 +80,7 @@ struct TangentStepping<'a, const N: usize> {
     newest: State<N>,
 }
 
-impl<const N: usize> Staged for TangentStepping<'_, N> {
+impl<const N: usize, const KEPT: usize> Staged for TangentStepping<'_, N, KEPT> {
     #[inline(always)]
     fn stage(&mut self, tableau: &Tableau, i: usize) {
         let (mut slope, rate) = if i == 0 {
@@ -87,8 +95,10 @@ impl<const N: usize> Staged for TangentStepping<'_, N> {
         slope += combination(State::zeros(), &tableau.c[i], i, self.u) * self.per_h;
         self.u[i] = self.factors.solve(&slope);
         let coupling = combination(Jacobian::zeros(), &tableau.c[i], i, self.v);
-        let right = rate + self.here.along(&self.u[i]) * self.tangent + coupling * self.per_h;
-        for column in 0..N {
+        let along = self.here.along(self.field, self.y, &self.u[i]);
+        let right = rate + along * self.tangent + coupling * self.per_h;
+        let columns = if N > SMALL { self.field.dimension() } else { N };
+        for column in 0..columns {
             let solved = self.factors.solve(&right.column(column).into_owned());
             self.v[i].set_column(column, &solved);
         }
@@ -96,27 +106,27 @@ impl<const N: usize> Staged for TangentStepping<'_, N> {
 }
 
 /// A state and its tangent on their way.
-pub(super) struct Bundle<'a, S, const N: usize> {
+pub(super) struct Bundle<'a, S, const N: usize, const KEPT: usize> {
     field: &'a dyn VectorField<N>,
     tolerances: Tolerances,
     may_err: MayErr<N>,
     work: &'a mut Work,
     y: State<N>,
     tangent: Jacobian<N>,
-    here: SecondDerivatives<N>,
+    here: SecondDerivatives<N, KEPT>,
     /// The end of the tried step, its stages, f at the last of them, and what was looked up ahead.
     next: (State<N>, Jacobian<N>),
     u: Stages<N, 1>,
-    v: Stages<N, N>,
+    v: &'a mut Stages<N, N>,
     last_f: State<N>,
-    ahead: SecondDerivatives<N>,
+    ahead: SecondDerivatives<N, KEPT>,
     scheme: S,
 }
 
-impl<'a, S: Scheme, const N: usize> Bundle<'a, S, N> {
-    /// At y with the identity; `None` if the second derivative is not finite there.
+impl<'a, S: Scheme, const N: usize, const KEPT: usize> Bundle<'a, S, N, KEPT> {
+    /// At y with the identity, with room for the stages of the tangent; `None` if the second derivative is not finite there.
     pub fn new(
-        scheme: S,
+        (scheme, v): (S, &'a mut Stages<N, N>),
         field: &'a dyn VectorField<N>,
         tolerances: Tolerances,
         work: &'a mut Work,
@@ -135,7 +145,7 @@ impl<'a, S: Scheme, const N: usize> Bundle<'a, S, N> {
             here,
             next: (y, tangent),
             u: [State::zeros(); MAX_STAGES],
-            v: [Jacobian::zeros(); MAX_STAGES],
+            v,
             last_f: here.linear.f,
             ahead: here,
             scheme,
@@ -147,7 +157,7 @@ impl<'a, S: Scheme, const N: usize> Bundle<'a, S, N> {
     }
 }
 
-impl<S: Scheme, const N: usize> Steppable for Bundle<'_, S, N> {
+impl<S: Scheme, const N: usize, const KEPT: usize> Steppable for Bundle<'_, S, N, KEPT> {
     fn error_order(&self) -> u32 {
         error_order(self.scheme.tableau())
     }
@@ -169,7 +179,11 @@ impl<S: Scheme, const N: usize> Steppable for Bundle<'_, S, N> {
         let tableau = self.scheme.tableau();
         let count = tableau.stages;
         self.work.factorisations += 1;
-        let factors = Factors::shifted(1.0 / (h * tableau.gamma), &self.here.linear.jacobian)?;
+        let factors = Factors::shifted(
+            self.field.dimension(),
+            1.0 / (h * tableau.gamma),
+            &self.here.linear.jacobian,
+        )?;
         self.work.rhs += count - 1;
         self.work.jacobians += count - 1;
         let mut stepping = TangentStepping {
@@ -180,7 +194,7 @@ impl<S: Scheme, const N: usize> Steppable for Bundle<'_, S, N> {
             factors,
             per_h: 1.0 / h,
             u: &mut self.u,
-            v: &mut self.v,
+            v: self.v,
             newest: self.here.linear.f,
         };
         stepping.all_stages(self.scheme);
@@ -188,11 +202,11 @@ impl<S: Scheme, const N: usize> Steppable for Bundle<'_, S, N> {
         let next = combination(self.y, &tableau.m, count, &self.u);
         self.next = (
             self.field.timed(next, &self.y, h),
-            combination(self.tangent, &tableau.m, count, &self.v),
+            combination(self.tangent, &tableau.m, count, self.v),
         );
         let error = combination(State::zeros(), &tableau.e, count, &self.u);
         let mut norm = error_norm(self.may_err, &error, &self.y, &self.next.0)?;
-        let errors = combination(Jacobian::zeros(), &tableau.e, count, &self.v);
+        let errors = combination(Jacobian::zeros(), &tableau.e, count, self.v);
         let of_columns = MayErr::equally(self.tolerances);
         for column in 0..N {
             let of = |matrix: &Jacobian<N>| matrix.column(column).into_owned();

@@ -125,7 +125,11 @@ impl<S: Scheme, const N: usize> Steppable for StepState<'_, S, N> {
     fn attempt(&mut self, h: f64) -> Option<f64> {
         let tableau = self.scheme.tableau();
         self.work.factorisations += 1;
-        let factors = Factors::shifted(1.0 / (h * tableau.gamma), &self.here.jacobian)?;
+        let factors = Factors::shifted(
+            self.field.dimension(),
+            1.0 / (h * tableau.gamma),
+            &self.here.jacobian,
+        )?;
         self.work.rhs += tableau.stages - 1;
         let mut stepping = Stepping {
             field: self.field,

@@ -2,7 +2,9 @@
 
 use crate::error::{Error, Result};
 use crate::expression::Expressions;
-use crate::field::{Analytic, ExactField, Jacobian, Parametrised, State, VectorField};
+use crate::field::{
+    Analytic, ExactField, Jacobian, Parametrised, State, VectorField, jacobian_of_rows, state,
+};
 use crate::number::{DoubleDouble, Interval, Jet, Real};
 use crate::series::{ByRecording, Jet3, RecordedExpressions, Solution, Tangent, TaylorMap};
 use std::borrow::Cow;
@@ -28,7 +30,7 @@ pub struct TextSystem {
 
 impl TextSystem {
     /// As many variables as there are, at most.
-    pub const LARGEST: usize = 8;
+    pub const LARGEST: usize = 100;
 
     /// The rates of the states, one for each, in the states and the parameters by their places in these lists.
     ///
@@ -199,7 +201,7 @@ impl TextSystem {
     /// The field.
     ///
     /// # Errors
-    /// [`Error::Parameter`] where it has other than N variables.
+    /// [`Error::Parameter`] where it has more than N variables.
     pub fn field<const N: usize>(&self) -> Result<TextField<'_, N>> {
         TextField::of(Cow::Borrowed(self))
     }
@@ -322,7 +324,7 @@ fn kept(name: &str) -> &'static str {
     new
 }
 
-/// A [`TextSystem`] of N variables.
+/// A [`TextSystem`] of N variables, or of fewer ([`VectorField::dimension`]).
 #[derive(Debug, Clone)]
 pub struct TextField<'a, const N: usize> {
     system: Cow<'a, TextSystem>,
@@ -334,17 +336,26 @@ impl<'a, const N: usize> TextField<'a, N> {
     /// The field of a system that stays with its owner, or of one's own.
     ///
     /// # Errors
-    /// [`Error::Parameter`] where the system has other than N variables.
+    /// [`Error::Parameter`] where the system has more than N variables.
     pub fn of(system: Cow<'a, TextSystem>) -> Result<Self> {
         let count = system.variables();
-        if count != N {
-            let must = format!("{N}, as many as the field is asked for");
+        if count > N {
+            let must = format!("at most {N}, as many as the field is asked for");
             return Err(Error::parameter("the number of variables", count, must));
         }
         Ok(TextField {
             system,
             own_factors: OnceLock::new(),
         })
+    }
+
+    /// The variables among the components of a state.
+    fn variables<'y>(&self, y: &'y State<N>) -> &'y [f64] {
+        &y.as_slice()[..self.system.variables()]
+    }
+
+    fn matrix(&self, rows: &[f64]) -> Jacobian<N> {
+        jacobian_of_rows(self.system.variables(), rows)
     }
 
     fn recorded(&self) -> RecordedExpressions<'_, N> {
@@ -358,25 +369,30 @@ impl<'a, const N: usize> TextField<'a, N> {
 
 impl<const N: usize> VectorField<N> for TextField<'_, N> {
     fn f(&self, y: &State<N>) -> State<N> {
-        State::from_column_slice(&self.system.rates(y.as_slice()))
+        state(&self.system.rates(self.variables(y)))
+    }
+
+    fn dimension(&self) -> usize {
+        self.system.variables()
     }
 
     fn jacobian(&self, y: &State<N>) -> Jacobian<N> {
-        Jacobian::from_row_slice(&self.system.jacobian(y.as_slice()))
+        self.matrix(&self.system.jacobian(self.variables(y)))
     }
 
     fn second_derivative(&self, y: &State<N>, u: &State<N>, v: &State<N>) -> State<N> {
         let made = self
             .system
-            .second_derivative([y, u, v].map(|x| x.as_slice()));
-        State::from_column_slice(&made)
+            .second_derivative([y, u, v].map(|x| self.variables(x)));
+        state(&made)
     }
 
     fn exact(&self, y: &State<N>) -> Option<ExactField<N>> {
         /// What is left of the error of doubles, which intervals bound.
         const OF_DOUBLES: f64 = 2.0 * f64::EPSILON;
-        let x: Vec<DoubleDouble> = y.iter().map(|&y| y.into()).collect();
-        let within: Vec<Interval> = y.iter().map(|&y| Interval::constant(y)).collect();
+        let y = self.variables(y).iter();
+        let x: Vec<DoubleDouble> = y.clone().map(|&y| y.into()).collect();
+        let within: Vec<Interval> = y.map(|&y| Interval::constant(y)).collect();
         let doubles =
             |all: Vec<DoubleDouble>| -> Vec<f64> { all.into_iter().map(|x| x.to_f64()).collect() };
         // Where a bound is infinite, as around a kink, nothing is known of rounding there.
@@ -384,8 +400,8 @@ impl<const N: usize> VectorField<N> for TextField<'_, N> {
             let width = all.into_iter().map(|x| OF_DOUBLES * (x.hi() - x.lo()));
             width.map(|x| if x.is_finite() { x } else { 0.0 }).collect()
         };
-        let state = |all: Vec<f64>| State::from_column_slice(&all);
-        let matrix = |all: Vec<f64>| Jacobian::from_row_slice(&all);
+        let state = |all: Vec<f64>| state(&all);
+        let matrix = |all: Vec<f64>| self.matrix(&all);
         Some(ExactField {
             f: [
                 state(doubles(self.system.rates(&x))),
@@ -405,7 +421,7 @@ impl<const N: usize> VectorField<N> for TextField<'_, N> {
     fn own_factors(&self) -> [bool; N] {
         *self.own_factors.get_or_init(|| {
             let all = self.system.own_factors();
-            std::array::from_fn(|i| all[i])
+            std::array::from_fn(|i| all.get(i).is_some_and(|own| *own))
         })
     }
 
@@ -428,13 +444,16 @@ impl<const N: usize> Parametrised<N> for TextField<'_, N> {
     }
 
     fn parameter_derivative(&self, y: &State<N>, place: usize) -> State<N> {
-        State::from_column_slice(&self.system.parameter_derivative(y.as_slice(), place))
+        let y = self.variables(y);
+        state(&self.system.parameter_derivative(y, place))
     }
 
     fn parameter_jacobian(&self, y: &State<N>, place: usize) -> Jacobian<N> {
-        let column = |j: usize| self.system.mixed_derivative(y.as_slice(), j, place);
-        let columns: Vec<f64> = (0..N).flat_map(column).collect();
-        Jacobian::from_column_slice(&columns)
+        let y = self.variables(y);
+        let column = |j: usize| self.system.mixed_derivative(y, j, place);
+        let columns: Vec<f64> = (0..y.len()).flat_map(column).collect();
+        // What were rows are the columns.
+        self.matrix(&columns).transpose()
     }
 }
 

@@ -127,6 +127,8 @@ impl<const N: usize> Expansion<N> {
         zeros: &mut Zeros,
         found: &mut Vec<Passage>,
     ) {
+        let (Section::Plane { normal, .. } | Section::Extremum { normal }) = section;
+        let variables = normal.len();
         let mut function = [0.0; REFERENCE_ORDER + 1];
         let function = self.along(section, &mut function);
         let roots = zeros.follow(function, self.length / self.unit).iter();
@@ -134,7 +136,7 @@ impl<const N: usize> Expansion<N> {
         found.extend(wanted.map(|root| Passage {
             time: root.at * self.unit,
             crossing: root.crossing,
-            state: self.state_at(root.at).to_vec(),
+            state: self.state_at(root.at)[..variables].to_vec(),
         }));
     }
 
@@ -145,8 +147,10 @@ impl<const N: usize> Expansion<N> {
         into: &'a mut [f64; REFERENCE_ORDER + 1],
     ) -> &'a [f64] {
         let (Section::Plane { normal, .. } | Section::Extremum { normal }) = section;
-        let projected =
-            |j: usize| -> f64 { (0..N).map(|i| normal[i] * self.variables[i][j]).sum() };
+        let projected = |j: usize| -> f64 {
+            let parts = normal.iter().zip(&self.variables);
+            parts.map(|(along, series)| along * series[j]).sum()
+        };
         match section {
             Section::Plane { offset, .. } => {
                 for (j, c) in into[..=self.order].iter_mut().enumerate() {

@@ -132,8 +132,15 @@ fn tangent_of<'b>(anew: Anew<'b>, (watched, free, symmetric): Kind) -> Box<dyn T
     Box::new(Linearised::new(solution, kind, ROOM, 0.0))
 }
 
-/// A trajectory whose number of dimensions the compiler knows.
-struct Known<T, const N: usize>(T);
+/// A trajectory whose number of dimensions the compiler knows: N, of which so many are variables.
+struct Known<T, const N: usize>(T, usize);
+
+impl<T, const N: usize> Known<T, N> {
+    /// What is made for each variable, and nothing for the rest.
+    fn each<X: Default>(&self, make: impl Fn(usize) -> X) -> [X; N] {
+        std::array::from_fn(|i| if i < self.1 { make(i) } else { X::default() })
+    }
+}
 
 impl<T: Deref<Target: Trajectory> + DerefMut, const N: usize> Solution<N> for Known<T, N> {
     fn order(&self, rtol: f64) -> usize {
@@ -141,7 +148,7 @@ impl<T: Deref<Target: Trajectory> + DerefMut, const N: usize> Solution<N> for Kn
     }
 
     fn start(&mut self, y: &[f64; N]) {
-        self.0.start(y);
+        self.0.start(&y[..self.1]);
     }
 
     fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble {
@@ -153,14 +160,14 @@ impl<T: Deref<Target: Trajectory> + DerefMut, const N: usize> Solution<N> for Kn
     }
 
     fn state(&self) -> [f64; N] {
-        std::array::from_fn(|i| self.0.state(i))
+        self.each(|i| self.0.state(i))
     }
 
     fn expansion(&self, order: usize, into: &mut Expansion<N>) {
         into.order = order;
         into.unit = self.0.unit();
         into.chart = |x| x;
-        for (i, variable) in into.variables.iter_mut().enumerate() {
+        for (i, variable) in into.variables.iter_mut().enumerate().take(self.1) {
             self.0.series(i, &mut variable[..=order]);
         }
         // A single interface stands in both places.
@@ -174,11 +181,11 @@ impl<T: Deref<Target: Trajectory> + DerefMut, const N: usize> Solution<N> for Kn
 
 impl<const N: usize, T: Deref<Target: Trajectory> + DerefMut> Tangent<N> for Known<T, N> {
     fn derivatives(&self) -> Derivatives<N> {
-        let column = |at: usize| std::array::from_fn(|i| self.0.derivative(i, at));
+        let column = |at: usize| self.each(|i| self.0.derivative(i, at));
         let (log_determinant, log_transverse) = self.0.log_growth();
         Derivatives {
-            start: std::array::from_fn(column),
-            parameters: (0..self.0.free()).map(|i| column(N + i)).collect(),
+            start: std::array::from_fn(|at| if at < self.1 { column(at) } else { [0.0; N] }),
+            parameters: (0..self.0.free()).map(|i| column(self.1 + i)).collect(),
             log_determinant,
             log_transverse,
         }
@@ -195,11 +202,11 @@ impl<const N: usize, T: Deref<Target: Trajectory> + DerefMut> Tangent<N> for Kno
 
 impl<const N: usize> TaylorMap<N> for Known<Box<Transported<'_>>, N> {
     fn polynomials(&self) -> [Jet3; N] {
-        std::array::from_fn(|i| self.0.polynomial(i))
+        self.each(|i| self.0.polynomial(i))
     }
 
     fn after(&self, time: Jet3) -> [[Jet3; N]; 2] {
-        let each: [[Jet3; 2]; N] = std::array::from_fn(|i| self.0.after(i, time));
+        let each: [[Jet3; 2]; N] = self.each(|i| self.0.after(i, time));
         [0, 1].map(|k| each.map(|both| both[k]))
     }
 }
@@ -211,28 +218,38 @@ pub trait ByRecording<'a, const N: usize>: Sized {
 
     /// A solution.
     fn solution(self) -> Box<dyn Solution<N> + 'a> {
-        Box::new(Known(self.recording(None).solution()))
+        let recording = self.recording(None);
+        let variables = recording.variables;
+        Box::new(Known(recording.solution(), variables))
     }
 
     /// A solution in 31 digits.
     fn reference(self) -> Box<dyn Solution<N> + 'a> {
-        Box::new(Known(self.recording(None).reference()))
+        let recording = self.recording(None);
+        let variables = recording.variables;
+        Box::new(Known(recording.reference(), variables))
     }
 
     /// A solution with its derivatives in its start and in the parameters of these places.
     fn tangent(self, free: &[usize]) -> Box<dyn Tangent<N> + 'a> {
-        Box::new(Known(self.recording(Some(free)).tangent()))
+        let recording = self.recording(Some(free));
+        let variables = recording.variables;
+        Box::new(Known(recording.tangent(), variables))
     }
 
     /// The same in 31 digits.
     fn reference_tangent(self, free: &[usize]) -> Box<dyn Tangent<N> + 'a> {
-        Box::new(Known(self.recording(Some(free)).reference_tangent()))
+        let recording = self.recording(Some(free));
+        let variables = recording.variables;
+        Box::new(Known(recording.reference_tangent(), variables))
     }
 
     /// A solution to third order in two variations, which are those of this start.
     fn transport(self, start: [Jet3; N]) -> Box<dyn TaylorMap<N> + 'a> {
         let recording = self.recording(None);
-        Box::new(Known(Box::new(recording.transport(&start))))
+        let variables = recording.variables;
+        let map = recording.transport(&start[..variables]);
+        Box::new(Known(Box::new(map), variables))
     }
 }
 
@@ -266,7 +283,7 @@ impl<'a, S: Equations<N, P> + 'a, const N: usize, const P: usize> ByRecording<'a
 /// formulas.
 #[derive(Debug, Clone, Copy)]
 pub struct RecordedExpressions<'a, const N: usize> {
-    /// The right-hand sides, N of them in N variables.
+    /// The right-hand sides, N of them at most, and as many variables.
     pub rates: &'a Expressions,
     /// The slip rates of the interfaces, where there are any: one or two.
     pub slip_rates: Option<&'a Expressions>,
@@ -276,7 +293,13 @@ pub struct RecordedExpressions<'a, const N: usize> {
 
 impl<'a, const N: usize> ByRecording<'a, N> for RecordedExpressions<'a, N> {
     fn recording(self, free: Option<&[usize]>) -> Recording<'a> {
-        Recording::of_expressions((self.rates, self.slip_rates), N, self.parameters, free)
+        let variables = self.rates.count();
+        Recording::of_expressions(
+            (self.rates, self.slip_rates),
+            variables,
+            self.parameters,
+            free,
+        )
     }
 }
 

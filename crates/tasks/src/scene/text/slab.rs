@@ -397,9 +397,10 @@ impl TextSlab {
     }
 }
 
-/// How many interfaces there are in each cluster: one, where the options say nothing of clusters.
+/// How many interfaces there are in each cluster: one, where the options say nothing of clusters. All steady states of as many are found by
+/// bisection, whose work grows exponentially with their number.
 fn counts(options: &SlabOptions) -> Result<Vec<usize>> {
-    const MOST: usize = TextSystem::LARGEST - 1;
+    const MOST: usize = 7;
     let interfaces = options.count();
     let Some(text) = &options.clusters else {
         return match interfaces {
