@@ -1,7 +1,7 @@
 //! The units in which a system moves by about 1: in these it is searched and followed, whatever units its formulas are in.
 //!
-//! They are measured along a run, by how far each state moves and how fast, and are powers of two: numbers come back without rounding. Where time
-//! is a variable, the one after the states, it has the unit of time.
+//! They are measured along a run, by how far each state moves and how fast. Rounded to powers of two numbers come back without rounding; as they are
+//! steps are as long whatever the system's own units. Where time is a variable, the one after the states, it has the unit of time.
 
 mod forced;
 mod seen;
@@ -66,7 +66,7 @@ impl MotionUnits {
     pub fn measured(system: &TextSystem, start: &Vector) -> Result<Self> {
         /// By what factor a state that has been measured may still grow.
         const GROWN: f64 = 1e4;
-        let first = Self::at_start(system, start)?;
+        let first = Self::at_start_exactly(system, start)?;
         let Some((there, second)) = first.run(system, start)? else {
             return Ok(first);
         };
@@ -78,13 +78,21 @@ impl MotionUnits {
         Ok(if grows { first } else { third })
     }
 
-    /// The same, with the logarithms of states that are factors of their own rates and, in a run from here, sink to where rounding of what they were
+    /// The same as powers of two.
+    #[must_use]
+    pub fn rounded(mut self) -> Self {
+        self.sizes.iter_mut().for_each(|size| *size = round(*size));
+        self.time = round(self.time);
+        self
+    }
+
+    /// The same, rounded, with the logarithms of states that are factors of their own rates and, in a run from here, sink to where rounding of what they were
     /// is larger than they are, and grow again by as much.
     ///
     /// # Errors
     /// Those of the field.
     pub fn measured_or_logarithmic(system: &TextSystem, start: &Vector) -> Result<Self> {
-        let units = Self::measured(system, start)?;
+        let units = Self::measured(system, start)?.rounded();
         let has = system.have_logarithms();
         if !has.contains(&true) {
             return Ok(units);
@@ -107,14 +115,18 @@ impl MotionUnits {
     }
 
     /// By the state, and the fastest rate of the linearised system; where a state is 0, by how far it moves in such a time, at first or by what
-    /// others then do to it.
+    /// others then do to it. Rounded.
     ///
     /// # Errors
     /// Those of the field.
     pub fn at_start(system: &TextSystem, start: &Vector) -> Result<Self> {
+        Ok(Self::at_start_exactly(system, start)?.rounded())
+    }
+
+    fn at_start_exactly(system: &TextSystem, start: &Vector) -> Result<Self> {
         let field = AnyField::of_text(Cow::Borrowed(system))?;
         let jacobian = field.jacobian(start);
-        let time = round(1.0 / fastest(&jacobian));
+        let time = 1.0 / fastest(&jacobian);
         let time = if time.is_normal() { time } else { 1.0 };
         let sizes = sizes_at_start((&field, &jacobian), start, time);
         let size = |size: &f64| if size.is_normal() { *size } else { 1.0 };
@@ -416,12 +428,12 @@ fn sizes_at_start(
     start: &Vector,
     time: f64,
 ) -> Vector {
-    let mut sizes = start.map(|x| round(x.abs()));
+    let mut sizes = start.abs();
     let mut way = field.f(start) * time;
     for _ in 0..start.len() {
         for (size, way) in sizes.iter_mut().zip(&way) {
             if !size.is_normal() {
-                *size = round(way.abs());
+                *size = way.abs();
             }
         }
         way = jacobian * way * time;

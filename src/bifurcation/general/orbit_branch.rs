@@ -336,6 +336,10 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
             Label::Pf => (self.pitchfork(near), None),
             _ => special_orbit(family, (self.number, label), near, meets),
         };
+        // At a pitchfork the direction is any of two: the parameter may seem to turn. But the orbit can't be solved for as a fold's can.
+        if label == Label::Sn && orbit.is_none() && goes_on(before, &palc.now) {
+            point = self.pitchfork(near);
+        }
         let form = match label {
             Label::Pd => Some(Form::Doubling),
             Label::Tr => Some(Form::Torus),
@@ -355,10 +359,17 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
     }
 }
 
+/// Slopes of the parameter along the branch that are rounding: along a canard it turns within that.
+const ROUNDING: f64 = 1e-8;
+
+/// Whether the parameter has the same sense at both ends of a step.
+fn goes_on(from: &DirectedPoint, to: &DirectedPoint) -> bool {
+    let [from, to] = [from, to].map(|one| one.direction.parameters[FREE]);
+    from * to > 0.0 && from.abs().min(to.abs()) > ROUNDING
+}
+
 /// Whether the parameter turns at an orbit with a multiplier 1, on a step from one point to another: at a fold, where at a pitchfork it goes on.
 fn turns(from: &DirectedPoint, at: &DirectedPoint, to: &DirectedPoint) -> bool {
-    /// Slopes of the parameter along the branch that are rounding: along a canard it turns within that.
-    const ROUNDING: f64 = 1e-8;
     /// The slope at a fold, in parts of those at the ends of the step, where it changes its sign on the step, and where it is seen to turn twice.
     const ONCE: f64 = 0.02;
     const TWICE: f64 = 1e-3;

@@ -42,14 +42,14 @@ impl MotionUnits {
         for _ in 0..last {
             for (size, way) in sizes.iter_mut().zip(&way) {
                 if !size.is_normal() {
-                    *size = round(*way);
+                    *size = *way;
                 }
             }
             way = jacobian.abs() * way * time;
         }
         let sizes = sizes.iter().take(last);
         let sizes = sizes.map(|&size| if size.is_normal() { size } else { 1.0 });
-        Ok(Self::new(sizes.collect(), time))
+        Ok(Self::new(sizes.collect(), time).rounded())
     }
 }
 

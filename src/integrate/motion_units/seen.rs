@@ -1,6 +1,6 @@
 //! What is seen of a run whose units are measured.
 
-use super::{MotionUnits, STEPS, STILL, round};
+use super::{MotionUnits, STEPS, STILL};
 use crate::field::{Matrix, Vector};
 use crate::integrate::{AnyStep, Control};
 use crate::number::{eigenvalues, eigenvector};
@@ -98,11 +98,11 @@ impl Seen {
         const LEAST: f64 = 1.0 / 16.0;
         let size = |(moved, value): (&f64, &f64)| {
             let own = moved * reach;
-            let size = round(if own.is_finite() && own > STILL * value {
+            let size = if own.is_finite() && own > STILL * value {
                 own.max(LEAST * value)
             } else {
                 *value
-            });
+            };
             if size.is_normal() { size } else { 1.0 }
         };
         MotionUnits::new(motion.iter().zip(&values).map(size).collect(), 1.0)
@@ -115,13 +115,12 @@ impl Seen {
         for (i, (least, most)) in self.ranges.iter().enumerate() {
             let range = most - least;
             let moves = range > STILL * most.abs().max(least.abs());
-            let size = round(if moves { range } else { self.value(i) });
+            let size = if moves { range } else { self.value(i) };
             sizes.push(if size.is_normal() { size } else { 1.0 });
             if moves {
                 time = time.min((self.end - self.begin) * range / self.ways[i]);
             }
         }
-        let time = round(time);
         let time = if time.is_normal() { time } else { 1.0 };
         MotionUnits::new(sizes, time)
     }

@@ -89,7 +89,7 @@ impl TextSubject {
         };
         let system = &model.system;
         let units = match (start, &place) {
-            (Some(start), _) => model.motion_units(&start)?,
+            (Some(start), _) => model.motion_units_of_branch(&start)?,
             (None, Some(SearchPlace::Within(ranges))) => model.motion_units_within(ranges)?,
             (None, _) => MotionUnits::given(system.states().len()),
         };

@@ -176,7 +176,7 @@ impl SystemPoints for TextPoints {
         let mut units = MotionUnits::given(system.states().len());
         let (begin, section, equal_parts) = match (&self.begins, &self.model.slab) {
             (Some((first, section)), _) => {
-                units = MotionUnits::measured(&system, first)?;
+                units = MotionUnits::measured(&system, first)?.rounded();
                 let mut begin = units.inward(first);
                 if start > 0 {
                     for x in begin.iter_mut() {

@@ -8,11 +8,19 @@ use twinslip::integrate::MotionUnits;
 use twinslip::number::Interval;
 
 impl TextModel {
-    /// Those of a run from here; interfaces keep theirs, in which all are of order 1.
+    /// Those of a run from here, rounded; interfaces keep theirs, in which all are of order 1.
     ///
     /// # Errors
     /// Those of the field.
     pub fn motion_units(&self, start: &Vector) -> Result<MotionUnits> {
+        Ok(self.motion_units_of_branch(start)?.rounded())
+    }
+
+    /// The same as they are: steps along a branch are as long whatever the units of the file.
+    ///
+    /// # Errors
+    /// Those of the field.
+    pub fn motion_units_of_branch(&self, start: &Vector) -> Result<MotionUnits> {
         match self.slab {
             Some(_) => Ok(MotionUnits::given(start.len())),
             None => MotionUnits::measured(&self.system, start),
