@@ -131,6 +131,20 @@ fn a_wave_decays_in_a_ring_of_fifty() {
 }
 
 #[test]
+fn many_states_are_drawn_in_one_panel() {
+    let path = file("many_variables_picture", &text(12, 8.0));
+    let picture = path.replace("system.toml", "run.svg");
+    let data = path.replace("system.toml", "run.csv");
+    let run =
+        format!("integrate --system {path} --until 5 --points 300 -o {data} --plot {picture} -q");
+    let made = twinslip(&run);
+    assert_eq!(made.code, 0, "{}", made.err);
+    let drawn = std::fs::read_to_string(&picture).expect("a picture");
+    assert!(drawn.contains("number of the state"));
+    assert_eq!(drawn.matches("time t").count(), 1);
+}
+
+#[test]
 fn what_takes_no_more_than_eight_variables_says_so() {
     let path = file("many_variables_refused", &text(12, 1.0));
     for command in [

@@ -11,6 +11,7 @@ mod diagram;
 mod equilibria;
 mod fit;
 mod general;
+mod heat_map;
 mod law;
 mod listing;
 mod many;

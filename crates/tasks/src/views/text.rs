@@ -1,5 +1,6 @@
 //! What systems of one's own show: columns and pictures.
 
+use super::heat_map::{MOST_PANELS, states_in_time};
 use super::law::law_columns;
 use super::orbit::multiplier_columns;
 use crate::scene::{
@@ -109,7 +110,7 @@ pub fn text_orbit_columns(model: &TextModel) -> Vec<Column<Orbit>> {
     columns
 }
 
-/// The states in time, and beside them the first two against each other.
+/// The states in time, each in a panel or, of many, all in one, and beside them the first two against each other.
 pub fn text_run(plan: &TextPlan, rows: &RowList) -> Drawing {
     let column = |name: &str| rows.column(name).unwrap_or_default();
     if let Some(slab) = &plan.model.slab {
@@ -128,7 +129,11 @@ pub fn text_run(plan: &TextPlan, rows: &RowList) -> Drawing {
             Axis::linear(*name),
         )
     });
-    let mut columns = vec![in_time.collect::<Vec<_>>()];
+    let in_time = match states.len() > MOST_PANELS {
+        true => vec![states_in_time(plan, rows)],
+        false => in_time.collect(),
+    };
+    let mut columns = vec![in_time];
     if let [first, second, ..] = states {
         columns.push(vec![Panel {
             series: vec![PlotSeries::new("", column(first), column(second))],
