@@ -77,7 +77,7 @@ fn are_same(name: &str, a: &Found, b: &Found) {
 /// Models of all kinds, and classical oscillators: from Hopf points to others, through folds and doublings, or from an orbit that is found.
 #[test]
 fn branches_of_orbits_are_the_same_in_any_units() {
-    const ALL: [(&str, &str, f64, f64); 43] = [
+    const ALL: [(&str, &str, f64, f64); 48] = [
         ("chemostat-ciliate", "D", 0.03, 0.1),
         ("circadian-per", "hr", 2520.0, 4680.0),
         ("colpitts", "R", 40.0, 200.0),
@@ -121,6 +121,11 @@ fn branches_of_orbits_are_the_same_in_any_units() {
         ("oscillators/koper", "l", -8.0, 8.0),
         ("oscillators/langford", "l", -1.0, 3.0),
         ("oscillators/peroxidase", "k1", 0.05, 0.4),
+        ("npz", "d", 0.5, 2.0),
+        ("herd-sqrt", "d", 0.45, 0.75),
+        ("cases/fitzhugh-nagumo-canard", "I", 0.1, 1.6),
+        ("oscillators/chua-smooth", "alpha", 1.0, 20.0),
+        ("oscillators/food-chain", "p", 0.01, 1.0),
     ];
     let mut random = ChaCha8Rng::seed_from_u64(53);
     // Every other one, others each time.

@@ -39,8 +39,17 @@ pub(super) struct Limit {
 }
 
 impl Periods {
+    /// The next one, unless it is on the way by which the branch has come: where what is left of the way is rounding a step may turn it round.
     pub fn push(&mut self, at: f64, period: f64) {
-        self.0.push([at, period]);
+        let between = |x: f64, a: f64, b: f64| (x - a) * (x - b) <= 0.0;
+        let mut ways = self.0.windows(2);
+        let is_known = ways.any(|way| {
+            let [a, b] = [way[0], way[1]];
+            between(at, a[0], b[0]) && between(period, a[1], b[1])
+        });
+        if !is_known {
+            self.0.push([at, period]);
+        }
     }
 
     /// Leaves the last one out.
@@ -60,16 +69,6 @@ impl Periods {
     pub fn stay(&self) -> bool {
         let last = self.0.last_chunk::<2>();
         last.is_some_and(|[a, b]| (b[0] - a[0]).abs() <= self.off())
-    }
-
-    /// Whether the last orbit is on the way by which the branch has come: where the way that is left is rounding a step may turn it round.
-    pub fn retrace(&self) -> bool {
-        let Some((&[at, period], before)) = self.0.split_last() else {
-            return false;
-        };
-        let between = |x: f64, a: f64, b: f64| (x - a) * (x - b) <= 0.0;
-        let mut ways = before.windows(2);
-        ways.any(|way| between(at, way[0][0], way[1][0]) && between(period, way[0][1], way[1][1]))
     }
 
     /// The limit of the coordinate at the end of the branch, whose last orbit this is; `None` where the period does not grow without bound

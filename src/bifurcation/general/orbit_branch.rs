@@ -115,8 +115,7 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         let mut left_out = 0;
         let limit = loop {
             let limit = periods.limit(branch, last);
-            let is_idle = periods.stay() || periods.retrace();
-            if limit.is_some() || (left_out >= LEFT_OUT && !is_idle) {
+            if limit.is_some() || (left_out >= LEFT_OUT && !periods.stay()) {
                 break limit;
             }
             periods.pop();
