@@ -439,7 +439,7 @@ def test_unknown_names_are_told() -> None:
 ARGUMENTS = [
     ("states: it must be a list of names", {"states": "xy"}),
     ("states: there are 0, but there must be 1 to 100", {"states": []}),
-    ("states: there are 9", {"states": [f"x{i}" for i in range(9)]}),
+    ("states: there are 101", {"states": [f"x{i}" for i in range(101)]}),
     ("states: 'x' is given twice", {"states": ["x", "x"]}),
     ("states: 'pi' has a meaning of its own", {"states": ["pi"]}),
     ("states: 'exp' has a meaning of its own", {"states": ["exp"]}),

@@ -58,7 +58,7 @@ def traced_event(function: Function, asked: AskedEvent, t: float, y: Array) -> A
         # It has no zeros, or nothing else.
         return none(None)
     if function.formula(symbol.place) is None:
-        return none(f"its formula has t beside {count} values")
+        return none(f"its formula has t beside {function.count} values")
     if differs([function.point(t, y.tolist()).value(symbol.place)], [asked.called(t, y.copy())]):
         return none("it gives other values with numbers than with symbols")
     return Asked(sampled, symbol, function, None)

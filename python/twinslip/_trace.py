@@ -15,7 +15,7 @@ from ._symbols import Formulas, Symbol
 from ._text import NAMES_OF_FUNCTIONS, definitions, number, quoted
 
 #: No system has more states, and no table of its text more entries.
-MOST_STATES = 8
+MOST_STATES = 100
 MOST_ENTRIES = 200
 #: No text is longer, in bytes, and no name.
 LONGEST = 1 << 16

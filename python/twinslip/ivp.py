@@ -61,7 +61,7 @@ def solve_ivp(
         symbols, and again wherever one of its comparisons changes: arithmetic, numpy's functions
         of each element and those of ``math``, indexing, slices, loops, arrays, ``np.where`` and
         ``if`` go, steps such as ``t % 1`` too. Runs end and begin again where a comparison
-        changes, as exactly as anywhere. With t in the rates there may be 7 values. A System is
+        changes, as exactly as anywhere. With t in the rates there may be 99 values. A System is
         taken too, also by the name ``system``.
     t_span : (float, float)
         Where it begins and ends [of interfaces L/V*; s in SI]; backward in time where the end is
