@@ -21,6 +21,18 @@ struct Target<'a> {
 /// An arc comes to a plane within so many times what it took before; and as near to the node, in parts of the extents.
 const LATE: f64 = 8.0;
 const NEAR: f64 = 0.3;
+/// A flow that takes so many times the steps that it took until it was expected, and so many more, has left the orbit for good.
+const MORE: (usize, usize) = (10, 1000);
+
+/// What becomes of the flow from a node.
+enum Arrival {
+    /// It comes to the plane after this time.
+    After(f64),
+    /// It does not, but stays where the orbit is.
+    Astray,
+    /// It takes too many steps.
+    Lost,
+}
 
 impl Target<'_> {
     fn beyond(&self, x: &[f64]) -> f64 {
@@ -32,20 +44,29 @@ impl Target<'_> {
         (x - self.node).component_div(self.extents).amax()
     }
 
-    /// The time from `start` to the plane, crossed with the flow: of several the one nearest to `expected`. `None` where the flow does not come there.
+    /// The time from `start` to the plane, crossed with the flow: of several the one nearest to `expected`.
     fn time_from(
         &self,
         tracer: &mut Tracer,
         field: &AnyField<'_>,
         start: &Vector,
         expected: f64,
-    ) -> Result<Option<f64>> {
+    ) -> Result<Arrival> {
+        let (mut lost, mut steps, mut expected_steps) = (false, 0, 0);
         let mut found: Option<f64> = None;
         let off = |time: f64| (time / expected).ln().abs();
         let mut observer = |step: &AnyStep<'_>| {
             if found
                 .is_some_and(|found| off(found) < off(step.t0) && step.t0.abs() > expected.abs())
             {
+                return Ok(Control::Stop);
+            }
+            steps += 1;
+            if step.t0.abs() < expected.abs() {
+                expected_steps = steps;
+            }
+            lost = steps > MORE.0 * expected_steps + MORE.1;
+            if lost {
                 return Ok(Control::Stop);
             }
             let ends = [self.beyond(step.y0), self.beyond(step.y1)];
@@ -65,7 +86,11 @@ impl Target<'_> {
         };
         let latest = (LATE * expected.abs()).min(expected.abs() + 0.5 * self.period);
         tracer.flow(field, start, latest.copysign(expected), Some(&mut observer))?;
-        Ok(found)
+        Ok(match found {
+            Some(time) => Arrival::After(time),
+            None if lost => Arrival::Lost,
+            None => Arrival::Astray,
+        })
     }
 }
 
@@ -93,7 +118,7 @@ fn zero(mut a: (f64, f64), mut b: (f64, f64), f: impl Fn(f64) -> f64) -> f64 {
 
 impl ShootingNodes {
     /// The same nodes with the times that the flow takes from each to the plane of the next, where it comes there, on the arcs for which
-    /// `uncertain` says so.
+    /// `uncertain` says so; `None` where it leaves the orbit for good.
     ///
     /// # Errors
     /// Those of the flow.
@@ -103,7 +128,7 @@ impl ShootingNodes {
         field: &AnyField<'_>,
         normals: impl Fn(usize) -> Vector,
         uncertain: impl Fn(usize) -> bool,
-    ) -> Result<Self> {
+    ) -> Result<Option<Self>> {
         let (extents, period) = (extents(self.nodes.iter()), self.period().abs());
         let count = self.nodes.len();
         for k in (0..count).filter(|&k| uncertain(k)) {
@@ -114,10 +139,12 @@ impl ShootingNodes {
                 extents: &extents,
                 period,
             };
-            let expected = self.durations[k];
-            let found = target.time_from(tracer, field, &self.nodes[k], expected)?;
-            self.durations[k] = found.unwrap_or(expected);
+            match target.time_from(tracer, field, &self.nodes[k], self.durations[k])? {
+                Arrival::After(time) => self.durations[k] = time,
+                Arrival::Astray => {}
+                Arrival::Lost => return Ok(None),
+            }
         }
-        Ok(self)
+        Ok(Some(self))
     }
 }

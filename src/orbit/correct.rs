@@ -303,7 +303,7 @@ impl<'a> Corrector<'a> {
                 site.shooting = site
                     .shooting
                     .arriving(tracer, &field, normals, uncertain)
-                    .ok()?;
+                    .ok()??;
             }
             let linear = self.linear_in(planes, &site)?;
             let (closing, along) = linear.solutions(free, self.family.scale(site.at))?;
