@@ -17,7 +17,7 @@ use super::stiffness::method_for;
 use super::test_function::{Spectrum, TestFunction};
 use crate::error::{Error, Result};
 use crate::field::Matrix;
-use crate::integrate::MAX_STEPS;
+use crate::integrate::{Choice, MAX_STEPS};
 use nalgebra::{Matrix2, Vector2};
 use std::sync::Arc as Shared;
 
@@ -125,8 +125,9 @@ pub struct Corrector<'a> {
     pub family: &'a dyn ParametrisedField,
     /// What makes its arcs.
     pub tracer: Tracer,
-    /// The tolerance and the bounds on the steps of an arc and of all, where the method is the one for each orbit.
-    for_each: Option<(f64, (usize, usize))>,
+    /// The tolerances of an explicit and of an implicit method, and the bounds on the steps of an arc and of all, where the method is the one for each
+    /// orbit.
+    for_each: Option<([f64; 2], (usize, usize))>,
 }
 
 impl<'a> Corrector<'a> {
@@ -151,8 +152,23 @@ impl<'a> Corrector<'a> {
         Ok(Corrector {
             family,
             tracer: Tracer::limited(tolerance, steps.0, steps.1)?,
-            for_each: family.is_any_system().then_some((tolerance, steps)),
+            for_each: family.is_any_system().then_some(([tolerance; 2], steps)),
         })
+    }
+
+    /// With a Taylor method of the first of these tolerances, or an implicit one of the second for stiff orbits.
+    ///
+    /// # Errors
+    /// As of [`Self::new`].
+    pub fn with_tolerances(
+        family: &'a dyn ParametrisedField,
+        tolerances: [f64; 2],
+    ) -> crate::Result<Self> {
+        let mut made = Self::new(family, tolerances[0])?;
+        if let Some((of_methods, _)) = &mut made.for_each {
+            *of_methods = tolerances;
+        }
+        Ok(made)
     }
 
     /// With any method. Where it makes no derivatives in the parameters they are differences of its flows, which Newton's method
@@ -249,11 +265,15 @@ impl<'a> Corrector<'a> {
     /// # Errors
     /// As of [`Self::within`].
     pub fn suit(&mut self, guess: &ContinuationPoint) -> Result<()> {
-        let Some((tolerance, steps)) = self.for_each else {
+        let Some(([explicit, implicit], steps)) = self.for_each else {
             return Ok(());
         };
         let field = self.family.field(guess.at);
         let method = method_for(&field, &guess.shooting);
+        let tolerance = match method {
+            Choice::Radau => implicit,
+            _ => explicit,
+        };
         if method.name() != self.tracer.name() {
             self.tracer = Tracer::for_orbit(method, tolerance, steps)?;
         }

@@ -73,15 +73,11 @@ pub fn refined(
 ) -> Option<RefinedPoint> {
     let conditions: Vec<_> = meets.iter().map(|exactly| exactly.condition()).collect();
     let mut solutions: Vec<Regular> = Vec::new();
-    for ([explicit, implicit], part) in SOLUTIONS {
-        let mut corrector = Corrector::new(family, explicit).ok()?;
+    for (tolerances, part) in SOLUTIONS {
+        let mut corrector = Corrector::with_tolerances(family, tolerances).ok()?;
         let begin = solutions.first().map_or(near, |first| &first.site);
         corrector.suit(begin).ok()?;
         let is_stiff = corrector.tracer.name() == Choice::Radau.name();
-        if is_stiff {
-            corrector = Corrector::new(family, implicit).ok()?;
-            corrector.suit(begin).ok()?;
-        }
         let field = family.field(begin.at);
         let shooting = if solutions.is_empty() && is_stiff {
             // The nodes of a branch stand aside of its jumps.
@@ -105,7 +101,7 @@ pub fn refined(
         }
     }
     let alone = solutions.len() < SOLUTIONS.len();
-    let mut corrector = Corrector::new(family, SOLUTIONS[0].0[0]).ok()?;
+    let mut corrector = Corrector::with_tolerances(family, SOLUTIONS[0].0).ok()?;
     let noise = corrector.noise(&solutions[0], free, &conditions);
     let noise = noise.unwrap_or(Noise::UNKNOWN);
     let all = |of: &dyn Fn(&Regular) -> f64, noise: f64, rounding: f64| {
