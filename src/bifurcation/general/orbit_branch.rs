@@ -335,7 +335,7 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
             Label::Pf => (self.pitchfork(near), None),
             _ => special_orbit(family, (self.number, label), near, meets),
         };
-        // At a pitchfork the direction is any of two: the parameter may seem to turn. But the orbit can't be solved for as a fold's can.
+        // At a pitchfork two branches cross, and a direction between them may make the parameter seem to turn. But no fold is found there.
         if label == Label::Sn && orbit.is_none() && goes_on(before, &palc.now) {
             point = self.pitchfork(near);
         }
