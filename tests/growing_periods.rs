@@ -100,6 +100,64 @@ z = 0.0
     ends_at(&asked, "mu", "homoclinic", 1.606_203_845_707_1, 1e-7);
 }
 
+/// Hindmarsh and Rose's branch from the second Hopf point goes to and fro, and every turn of it makes the orbit two spikes longer beside another
+/// orbit. The folds are those of AUTO-07p (NTST = 400, EPSL = 1e-8, DSMAX = 0.02), which with a step of 0.05 leaves some of them out.
+#[test]
+fn no_turn_of_a_branch_beside_another_orbit_is_lost() {
+    const FOLDS: [[f64; 2]; 14] = [
+        [5.3427984126, 72.560076],
+        [5.3410654239, 85.311703],
+        [5.3420779410, 91.413908],
+        [5.3406350631, 98.741806],
+        [5.3418540861, 105.302375],
+        [5.3405291943, 112.409567],
+        [5.3417991022, 119.106329],
+        [5.3405010530, 126.220905],
+        [5.3417835638, 132.971918],
+        [5.3404925048, 140.127338],
+        [5.3417785120, 146.896912],
+        [5.3404895533, 154.086960],
+        [5.3417766765, 160.856035],
+        [5.3404884392, 168.072146],
+    ];
+    // Between the first two AUTO has no other fold, but its orbits turn there.
+    const TURN: f64 = 76.65;
+    /// Between the turns of one side, some time later.
+    const LONGER: [f64; 2] = [13.9, 14.1];
+    let asked = "branch orbits --system tests/data/oscillators/hindmarsh-rose.toml --along I --from 4.9 --to 6";
+    let ended = command::twinslip(&format!("{asked} --format json -q"));
+    assert_eq!(ended.code, 0, "{}", ended.err);
+    let made: Value = serde_json::from_str(&ended.out).expect("JSON");
+    let all = made["result"]["special"].as_array().expect("points");
+    let folds: Vec<[f64; 2]> = all
+        .iter()
+        .filter(|one| one["label"] == "SN")
+        .map(|one| ["/I/value", "/period/value"].map(|at| number(one, at)))
+        .filter(|[_, period]| (period - TURN).abs() > 0.1)
+        .collect();
+    for (fold, known) in folds.iter().zip(&FOLDS) {
+        let near = |i: usize, off: f64| (fold[i] - known[i]).abs() < off;
+        assert!(near(0, 2e-9) && near(1, 1e-4), "{fold:?} for {known:?}");
+    }
+    for three in folds.windows(3).skip(FOLDS.len()) {
+        let longer = three[2][1] - three[0][1];
+        assert!(longer > LONGER[0] && longer < LONGER[1], "{three:?}");
+    }
+    let end = all.last().expect("an end");
+    let at = |part: &str| number(end, &format!("/I/{part}"));
+    let [value, off] = [at("value"), at("uncertainty")];
+    assert_eq!(end["label"], "HOM");
+    let last = &folds[folds.len() - 2..];
+    for [fold, _] in last {
+        assert!(
+            (fold - value).abs() <= off * (1.0 + 1e-6),
+            "{value} ± {off}"
+        );
+    }
+    // The folds tend to where orbits touch that are homoclinic to the other one.
+    assert!((value - off - 5.340_487_7).abs() < 1e-8 && (value + off - 5.341_775_48).abs() < 1e-8);
+}
+
 #[test]
 fn branches_end_at_saddle_nodes_on_the_cycle() {
     const NAME: &str = "saddle-node on a cycle";

@@ -40,6 +40,7 @@ mod spread;
 mod stiffness;
 mod switch;
 mod test_function;
+mod winding;
 mod within;
 
 pub use arc::{Arc, Tracer};

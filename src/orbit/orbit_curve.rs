@@ -5,6 +5,7 @@ use super::continuation_point::{ContinuationPoint, TangentVector};
 use super::correct::{Condition, Corrector, Goal, Regular};
 use super::new_nodes::no_nodes;
 use super::test_function::TestFunction;
+use super::winding::{Turns, quarter_turn};
 use crate::continuation::{self, Continuation, CurveStep, SolutionCurve, StepControl, Stop};
 use crate::error::{Error, Result};
 use crate::model::STIFFNESS;
@@ -219,6 +220,8 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
         let field = self.corrector.family.field(here.site.at);
         let nodes = here.site.shooting.nodes.iter();
         let flows: Vec<_> = nodes.map(|x| field.f(x)).collect();
+        let quarter_turn = quarter_turn(&field, &here.site.shooting, &flows);
+        let turns = Turns::of(&here.site.shooting, &flows);
         drop(field);
         let predicted = here.site.moved(direction, distance);
         let mut predicted = predicted.moved_along(&here.site, &flows);
@@ -232,6 +235,12 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
         let [period, to] = [&here, &&next].map(|orbit| orbit.site.shooting.period());
         if (to / period).ln().abs() > LONGER.ln() {
             return Err(not_near("a step to an orbit of about the same period"));
+        }
+        let [before, then] = [&here, &&next].map(|orbit| &orbit.site.shooting.durations[..]);
+        if quarter_turn.is_some_and(|most| (to - period).abs() > most)
+            || turns.is_some_and(|turns| turns.may_be_more(before, then))
+        {
+            return Err(not_near("a step to an orbit with as many turns"));
         }
         if !here.site.shooting.is_like(&next.site.shooting, LARGER) {
             return Err(not_near("a step to an orbit of about the same shape"));

@@ -32,6 +32,41 @@ const PASSED: f64 = 0.1;
 #[derive(Debug, Default)]
 pub(super) struct Periods(Vec<[f64; 2]>);
 
+/// The coordinates and the periods at the folds of a branch, as they are met.
+#[derive(Debug, Default)]
+pub(super) struct Folds(Vec<[f64; 2]>);
+
+impl Folds {
+    /// The next one.
+    pub fn push(&mut self, at: f64, period: f64) {
+        self.0.push([at, period]);
+    }
+
+    /// The two coordinates between which the branch goes to and fro without end, its period longer by the same time after every turn: as it does beside
+    /// orbits that are homoclinic to another periodic orbit (Gaspard & Wang 1987, J. Stat. Phys. 48, 151), whose tangencies the folds tend to.
+    pub fn winding(&self) -> Option<[f64; 2]> {
+        /// Folds that show it: three turns.
+        const FOLDS: usize = 6;
+        /// What folds of one side are apart, in parts of the way to the other side; and the times of turns, in parts of themselves.
+        const STAY: f64 = 1e-6;
+        const SAME_TIME: f64 = 1e-3;
+        let last = &self.0[self.0.len().checked_sub(FOLDS)?..];
+        let way = (last[FOLDS - 1][0] - last[FOLDS - 2][0]).abs();
+        let mut turns = last.windows(3);
+        let stays = turns.all(|three| (three[2][0] - three[0][0]).abs() <= STAY * way);
+        let times: Vec<f64> = last
+            .windows(3)
+            .map(|three| three[2][1] - three[0][1])
+            .collect();
+        // Of one side: the other orbit has another period at either.
+        let mut sides = times.windows(3);
+        let grows = sides.all(|three| {
+            three[0] > 0.0 && three[1] > 0.0 && (three[2] / three[0] - 1.0).abs() <= SAME_TIME
+        });
+        (stays && grows).then(|| [last[FOLDS - 2][0], last[FOLDS - 1][0]])
+    }
+}
+
 /// The limit of the parameter, and whether there is a saddle-node.
 pub(super) struct Limit {
     pub at: Uncertain,
@@ -185,15 +220,17 @@ fn passed_saddle(branch: &GeneralBranch<'_>, orbit: &Regular) -> Option<Saddle> 
 }
 
 impl Saddle {
-    /// The least absolute values of the real parts on either side of the axis, the lesser one first. By that the parameter tends to its limit in the
-    /// end; by the other one before that, where the orbit contracts much on its way around.
-    fn rates(&self) -> [f64; 2] {
+    /// The rates at which the parameter may tend to its limit: the least absolute values of the real parts on either side of the axis, the lesser one first.
+    /// It is that one in the end; the other one before that, where the orbit contracts much on its way around; half of them where the orbit passes
+    /// the saddle twice in a period.
+    fn rates(&self) -> [f64; 4] {
         let mut rates = [1.0, -1.0].map(|side| {
             let own = self.0.iter().map(|z| z.re * side).filter(|re| *re > 0.0);
             own.fold(f64::INFINITY, f64::min)
         });
         rates.sort_by(f64::total_cmp);
-        rates
+        let [least, other] = rates;
+        [least, other, 0.5 * least, 0.5 * other]
     }
 
     /// Whether on either side of the axis the eigenvalues that are nearest to it are complex.

@@ -1,6 +1,6 @@
 //! One branch of periodic orbits: what is on it, and where it ends.
 
-use super::growing_period::{Limit, Periods};
+use super::growing_period::{Folds, Limit, Periods};
 use super::multipliers_together::{Outside, is_real};
 use super::orbit_point::{special_orbit, sum_of_pair};
 use super::orbits::OrbitBranches;
@@ -11,6 +11,7 @@ use crate::bifurcation::orbits::{Vertical, embedded, middle, refined};
 use crate::continuation::{Met, Stop};
 use crate::error::Result;
 use crate::field::Vector;
+use crate::number::Uncertain;
 use crate::orbit::{
     ContinuationPoint, DirectedPoint, Palc, Regular, TestFunction, WatchedFunction,
 };
@@ -33,6 +34,7 @@ pub(super) struct OrbitBranch<'s, 'b, 'a> {
     /// The place of the Hopf point at which it begins.
     pub from_hopf: Option<usize>,
     periods: Periods,
+    folds: Folds,
     outside: Outside,
     /// While the parameter does not vary.
     vertical: Option<Vertical>,
@@ -53,6 +55,7 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
             begin: None,
             from_hopf: None,
             periods: Periods::default(),
+            folds: Folds::default(),
             outside: Outside::default(),
             vertical: Some(Vertical::default()),
         }
@@ -127,15 +130,41 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
                 ..point
             };
         };
-        let limit = GeneralPoint {
+        let why = "the period grows without bound".to_owned();
+        self.longest(point, Limit { at, is_saddle_node }, why)
+    }
+
+    /// The end of a branch whose period grows without bound; all but that as at its last orbit.
+    fn longest(&self, last: GeneralPoint, limit: Limit, why: String) -> GeneralPoint {
+        let Limit { at, is_saddle_node } = limit;
+        let end = GeneralPoint {
             label: Some(Label::Hom),
-            at: [at.value, point.at[1]],
+            at: [at.value, last.at[1]],
             saddle_node: is_saddle_node,
             period: None,
-            note: Some("the period grows without bound".to_owned()),
-            ..point
+            note: Some(why),
+            ..last
         };
-        limit.placed(branch.system.family, [at.uncertainty, 0.0])
+        end.placed(self.set.branch.system.family, [at.uncertainty, 0.0])
+    }
+
+    /// The end of a branch that winds without end.
+    fn winding_end(&self, last: &Regular) -> Option<GeneralPoint> {
+        let [a, b] = self.folds.winding()?;
+        let limit = Limit {
+            at: Uncertain::new(0.5 * (a + b), 0.5 * (b - a).abs()),
+            is_saddle_node: false,
+        };
+        let why = "the period grows without bound: the branch goes to and fro between two folds, its period longer by the same time after every turn, as \
+                   beside orbits that are homoclinic to another periodic orbit";
+        let point = self.set.row(self.number, last, None);
+        let mut end = self.longest(point, limit, why.to_owned());
+        // The middle of two coordinates need not be that of the parameters.
+        let family = self.set.branch.system.family;
+        let [a, b] = [a, b].map(|at| family.parameters([at, end.at[1]])[FREE]);
+        let off = 0.5 * (b - a).abs() + 2.0 * f64::EPSILON * a.abs();
+        end.parameters[FREE] = Uncertain::new(0.5 * (a + b), off);
+        Some(end)
     }
 
     fn tell(&mut self, event: GeneralEvent, teller: &mut Teller<'_>) -> ControlFlow<()> {
@@ -349,11 +378,24 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         {
             point = point.classified(way);
         }
-        if let (Label::Pd, Some(orbit)) = (label, orbit) {
-            self.set.doublings.push((orbit, self.times, false));
-        }
+        let end = match (label, orbit) {
+            (Label::Pd, Some(orbit)) => {
+                self.set.doublings.push((orbit, self.times, false));
+                None
+            }
+            (Label::Sn, Some(orbit)) => {
+                let site = &orbit.site;
+                self.folds.push(site.at[FREE], site.shooting.period());
+                self.winding_end(&orbit)
+            }
+            _ => None,
+        };
         self.set.begins(self.number);
         teller.special(point)?;
+        if let Some(end) = end {
+            teller.special(end)?;
+            return Break(());
+        }
         if ends { Break(()) } else { Continue(()) }
     }
 }

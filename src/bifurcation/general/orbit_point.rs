@@ -6,10 +6,10 @@ use crate::bifurcation::{Criticality, Label};
 use crate::number::Uncertain;
 use crate::orbit::{ParametrisedField, Regular, TestFunction, WatchedFunction};
 
-/// An orbit as a point, without its parameters.
 /// What the accuracy of a continuation leaves of ln |mu| that is zero.
 pub(super) const NEUTRAL: f64 = 1e-6;
 
+/// An orbit as a point, without its parameters.
 pub(super) fn orbit_point(number: usize, orbit: &Regular, label: Option<Label>) -> GeneralPoint {
     let shooting = orbit.site.shooting.clone();
     GeneralPoint {

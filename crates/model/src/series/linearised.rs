@@ -128,25 +128,25 @@ impl<'a, T: Element, X: Element> Linearised<'a, T, X> {
         }
     }
 
-    /// The step of the columns, in units of the series and at most `most`.
+    /// The step of the columns, in units of the series and at most `most`. In loops: closures would not be compiled for the processor.
     #[inline(always)]
     fn longest(&self, accuracy: &Accuracy, most: f64) -> f64 {
-        let (n, chunks) = (self.columns.variables, self.columns.chunks);
+        let chunks = self.columns.chunks;
         let any = self.columns.x[0];
-        let per_unit: Vec<X> = self
-            .solution
-            .reached()
-            .iter()
-            .map(|x| any.like(1.0 / (1.0 + x.first().abs())))
-            .collect();
-        let size = |chunk: usize, k: usize| {
-            let level = self.columns.level(k);
-            let relative = |i: usize| (level[i * chunks + chunk] * per_unit[i]).abs();
-            (0..n).map(relative).fold(any.like(0.0), Element::max)
-        };
         let ends = [0, 1, accuracy.order - 1, accuracy.order];
-        let of = |chunk| longest_of_columns(accuracy, most, ends.map(|k| size(chunk, k)));
-        (0..chunks).map(of).fold(most, f64::min)
+        let mut longest = most;
+        for chunk in 0..chunks {
+            let mut sizes = [any.like(0.0); 4];
+            for (i, x) in self.solution.reached().iter().enumerate() {
+                let per_unit = any.like(1.0 / (1.0 + x.first().abs()));
+                for (size, k) in sizes.iter_mut().zip(ends) {
+                    let relative = self.columns.level(k)[i * chunks + chunk] * per_unit;
+                    *size = Element::max(*size, relative.abs());
+                }
+            }
+            longest = f64::min(longest, longest_of_columns(accuracy, most, sizes));
+        }
+        longest
     }
 
     /// Goes on by h units.
@@ -224,10 +224,14 @@ impl<'a, T: Element, X: Element> Linearised<'a, T, X> {
     #[inline(always)]
     fn mean(&self, of: Source, order: usize, h: DoubleDouble) -> DoubleDouble {
         let (_, rows) = self.solution.made();
-        let any = rows.row(0)[0];
+        let row = match of {
+            Source::Number(x) => return x,
+            Source::Row(row) => rows.row(row),
+        };
+        let any = row[0];
         let (mut mean, h) = (any.like(0.0), any.like_exact(h));
         for k in (0..order).rev() {
-            mean = mean.mul_add(h, rows.coefficient(of, k) / any.like((k + 1) as f64));
+            mean = mean.mul_add(h, row[k] * any.like_exact(rows.one_over(k + 1)));
         }
         mean.to_exact()
     }

@@ -301,6 +301,28 @@ impl Program {
         self.later = LaterOrders::of(self);
     }
 
+    /// Those of the operations that the rates of the variables need.
+    pub fn of_rates(&self) -> Vec<Instruction> {
+        let mut needed = vec![false; self.rows];
+        for rate in &self.outputs[..self.variables] {
+            if let Source::Row(row) = *rate {
+                needed[row] = true;
+            }
+        }
+        let mut found = Vec::new();
+        for one in self.instructions.iter().rev() {
+            let second = one.second_result().is_some_and(|row| needed[row]);
+            if needed[one.result] || second || matches!(one.operation, Operation::Balanced(..)) {
+                for row in one.operation.operands().into_iter().flatten() {
+                    needed[row] = true;
+                }
+                found.push(*one);
+            }
+        }
+        found.reverse();
+        found
+    }
+
     /// Rows that it takes.
     pub fn rows(&self) -> usize {
         self.rows

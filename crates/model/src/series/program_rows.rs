@@ -16,7 +16,11 @@ pub(super) struct ProgramRows<T: Element> {
     inverses: Vec<DoubleDouble>,
     /// The operations of the first order and of all later ones; rows are where they begin among the coefficients.
     first: Vec<Instruction>,
+    /// Those of the first order that the rates need.
+    first_of_rates: Vec<Instruction>,
     later: Vec<PlacedLater<T>>,
+    /// Those of the later ones for which the first coefficients count.
+    prepared: Vec<usize>,
     /// The rates of the variables, and those that are no sums at later orders.
     rates: Vec<Rate>,
     rates_apart: Vec<Rate>,
@@ -67,6 +71,11 @@ impl<T: Element> ProgramRows<T> {
         let apart = rates
             .iter()
             .filter(|rate| !rate.joined_to(&mut later, room));
+        let rates_apart = apart.copied().collect();
+        let is_prepared = |one: &PlacedLater<T>| match one {
+            PlacedLater::Sum(sum) => sum.terms.iter().any(|term| term.sign.is_some()),
+            PlacedLater::Other(_) => true,
+        };
         ProgramRows {
             coefficients: vec![any.like(0.0); program.rows() * room],
             room,
@@ -74,7 +83,15 @@ impl<T: Element> ProgramRows<T> {
                 .map(|k| DoubleDouble::from(1.0) / k as f64)
                 .collect(),
             first: first.map(|one| placed(one, room)).collect(),
-            rates_apart: apart.copied().collect(),
+            first_of_rates: program
+                .of_rates()
+                .iter()
+                .map(|one| placed(one, room))
+                .collect(),
+            rates_apart,
+            prepared: (0..later.len())
+                .filter(|&i| is_prepared(&later[i]))
+                .collect(),
             later,
             rates,
             any,
@@ -97,9 +114,9 @@ impl<T: Element> ProgramRows<T> {
         }
     }
 
-    /// What is to be made at an order, and the operations of the first one and of the others.
+    /// What is to be made at an order, and the operations of those after the first.
     #[inline(always)]
-    fn order(&mut self, k: usize) -> (Level<'_, T>, &[Instruction], &mut [PlacedLater<T>]) {
+    fn order(&mut self, k: usize) -> (Level<'_, T>, &mut [PlacedLater<T>]) {
         let level = Level {
             coefficients: &mut self.coefficients,
             room: self.room,
@@ -111,7 +128,7 @@ impl<T: Element> ProgramRows<T> {
             order: DoubleDouble::from(k as f64),
             any: self.any,
         };
-        (level, &self.first, &mut self.later)
+        (level, &mut self.later)
     }
 
     /// The coefficients of all rows, one row after the other.
@@ -160,15 +177,29 @@ impl<T: Element> ProgramRows<T> {
     /// The first coefficients at this state.
     #[inline(always)]
     pub fn begin(&mut self, x: &[T]) {
+        self.begin_by(x, |rows| &mut rows.first);
+    }
+
+    /// Those of the rates at this state, and of what they need.
+    #[inline(always)]
+    pub fn begin_rates(&mut self, x: &[T]) {
+        self.begin_by(x, |rows| &mut rows.first_of_rates);
+    }
+
+    /// Those that these operations make at this state.
+    #[inline(always)]
+    fn begin_by(&mut self, x: &[T], by: impl Fn(&mut Self) -> &mut Vec<Instruction>) {
         let rows = self.coefficients.chunks_exact_mut(self.room);
         for (row, x) in rows.zip(x) {
             row[0] = *x;
         }
-        let (mut level, first, _) = self.order(0);
+        let operations = std::mem::take(by(self));
+        let (mut level, _) = self.order(0);
         // A loop, as all here: a closure would not be compiled for the processor.
-        for one in first {
+        for one in &operations {
             level.begin(one);
         }
+        *by(self) = operations;
     }
 
     /// The first coefficients of other rows of the same program.
@@ -206,13 +237,21 @@ impl<T: Element> ProgramRows<T> {
     /// What the first coefficients are to all later orders.
     #[inline(always)]
     pub fn prepare(&mut self) {
-        let (level, _, later) = self.order(0);
-        for one in later {
-            match one {
+        let prepared = std::mem::take(&mut self.prepared);
+        let (level, later) = self.order(0);
+        for &i in &prepared {
+            match &mut later[i] {
                 PlacedLater::Sum(sum) => level.set_signs(&mut sum.terms),
                 PlacedLater::Other(one) => level.prepare(one),
             }
         }
+        self.prepared = prepared;
+    }
+
+    /// Those of the later operations for which the first coefficients count.
+    #[inline(always)]
+    pub fn prepared(&self) -> &[usize] {
+        &self.prepared
     }
 
     /// The coefficients of the variables after the first, from the first ones of their rates.
@@ -230,7 +269,7 @@ impl<T: Element> ProgramRows<T> {
     #[inline(always)]
     pub fn level(&mut self, k: usize, unit: f64) {
         let share = self.share(k, unit);
-        let (level, _, later) = self.order(k);
+        let (level, later) = self.order(k);
         let level = Level { share, ..level };
         if k == 1 {
             for one in later.iter_mut() {

@@ -155,8 +155,10 @@ impl<T: Element> Data<T> {
             }
         }
         let mut holds = true;
-        for (later, &at) in rows.later().iter().zip(&self.layout.steps) {
-            match later {
+        let (later, steps) = (rows.later(), &self.layout.steps);
+        for &i in rows.prepared() {
+            let at = steps[i];
+            match &later[i] {
                 PlacedLater::Sum(sum) => {
                     for (j, term) in sum.terms.iter().enumerate() {
                         if term.sign.is_some() {

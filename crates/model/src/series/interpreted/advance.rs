@@ -139,7 +139,7 @@ impl<T: Element> Interpreted<'_, T> {
         self.probe.begin(&self.next.x);
     }
 
-    /// Whether the series is the solution at these parts of a step, of which the last one is looked at then.
+    /// Whether the series is the solution at these parts of a step, of which the last one is looked at then; at the other one the rates alone are.
     #[inline(always)]
     fn is_solution_at_both(&mut self, accuracy: &Accuracy, parts: [DoubleDouble; 2]) -> bool {
         let points = parts.map(|h| self.any.like_exact(h));
@@ -156,9 +156,13 @@ impl<T: Element> Interpreted<'_, T> {
                         self.slopes[i] = slope;
                         self.next.arrive(i, &self.reached, sum, points[point]);
                     }
-                    self.probe.begin(&self.next.x);
                 }
-                _ => self.look_at(accuracy.order, h),
+                _ => self.evaluate(accuracy.order, h),
+            }
+            if point == 0 {
+                self.probe.begin_rates(&self.next.x);
+            } else {
+                self.probe.begin(&self.next.x);
             }
             explained &= self.is_solution(accuracy, h);
         }

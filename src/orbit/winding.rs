@@ -1,0 +1,69 @@
+//! How much longer an orbit may become in a step where it makes one more turn about an equilibrium or another orbit.
+//!
+//! Beside a homoclinic orbit the branch winds: parameter and multipliers come back after every turn that the orbit makes more about the saddle-focus, or the
+//! periodic orbit, that it comes close to (Glendinning & Sparrow 1984, J. Stat. Phys. 35, 645; Gaspard & Wang 1987, J. Stat. Phys. 48, 151). A step over
+//! a whole turn sees the same slopes at both of its ends, and the two folds between them are lost.
+
+use super::shooting_nodes::ShootingNodes;
+use super::spread::extents;
+use crate::field::Vector;
+use crate::integrate::AnyField;
+use crate::number::eigenvalues;
+use std::f64::consts::FRAC_PI_2;
+
+/// In the time of a radian an orbit that lingers moves by this part of its extents.
+const LINGERS: f64 = 0.05;
+/// The part of a turn that a step may add to an orbit.
+const PART: f64 = 0.5;
+
+/// The time of a quarter of a turn about the focus where the orbit is slowest, if it lingers there; `flows` are the rates at its nodes.
+pub(super) fn quarter_turn(
+    field: &AnyField<'_>,
+    orbit: &ShootingNodes,
+    flows: &[Vector],
+) -> Option<f64> {
+    let extents = extents(orbit.nodes.iter());
+    let speed = |flow: &Vector| flow.component_div(&extents).amax();
+    let nodes = orbit.nodes.iter().zip(flows.iter().map(speed));
+    let (slowest, speed) = nodes.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let found = eigenvalues(&field.jacobian(slowest))?;
+    let turns = found.iter().map(|z| z.im).fold(0.0, f64::max);
+    (speed < LINGERS * turns).then(|| FRAC_PI_2 / turns)
+}
+
+/// The turns of an orbit: to each of its arcs, the time between the two maxima of its liveliest variable that the arc is between.
+pub(super) struct Turns(Vec<f64>);
+
+impl Turns {
+    /// Those that are seen at its nodes, where these are the rates; `None` where it has one maximum.
+    pub fn of(orbit: &ShootingNodes, flows: &[Vector]) -> Option<Self> {
+        let nodes = flows.len();
+        let maxima = |i: usize| {
+            let falls = move |k: usize| flows[k % nodes][i] <= 0.0;
+            (0..nodes).filter(move |&k| !falls(k) && falls(k + 1))
+        };
+        let liveliest = (0..orbit.dimension()).max_by_key(|&i| maxima(i).count())?;
+        let places: Vec<usize> = maxima(liveliest).collect();
+        if places.len() < 2 {
+            return None;
+        }
+        let mut times = vec![0.0; nodes];
+        let next = places.iter().cycle().skip(1);
+        for (&from, &to) in places.iter().zip(next) {
+            let to = if to > from { to } else { to + nodes };
+            let arcs = || (from..to).map(|k| k % nodes);
+            let time: f64 = arcs().map(|k| orbit.durations[k].abs()).sum();
+            arcs().for_each(|k| times[k] = time);
+        }
+        Some(Turns(times))
+    }
+
+    /// Whether an orbit that takes these times between its nodes may make one turn more than the one that took those before.
+    pub fn may_be_more(&self, before: &[f64], then: &[f64]) -> bool {
+        let times = before.iter().zip(then);
+        let parts = times
+            .zip(&self.0)
+            .map(|((a, b), turn)| (b - a).abs() / turn);
+        parts.sum::<f64>() > PART
+    }
+}
