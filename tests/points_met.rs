@@ -146,7 +146,7 @@ fn pitchforks_of_orbits_are_no_folds() {
             ),
             &["nu"],
         );
-        let first = ["HB", "SN", "PF", "SN", "PF", "PF", "SN", "SN"];
+        let first = ["HB", "SN", "PF", "SN", "PF", "PF", "SN", "SN", "PF"];
         assert_eq!(labels(&found)[..first.len()], first, "{step}: {found:?}");
         let folds = found[..first.len()].iter().filter(|one| one.0 == "SN");
         folds.for_each(|fold| assert!(fold.1[0][1] < 1e-10, "{step}: {fold:?}"));

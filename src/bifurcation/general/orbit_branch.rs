@@ -35,6 +35,10 @@ pub(super) struct OrbitBranch<'s, 'b, 'a> {
     pub from_hopf: Option<usize>,
     periods: Periods,
     folds: Folds,
+    /// Whether a fold was met on the step that is looked at.
+    turned: bool,
+    /// What seems to be a fold there, as the parameter turns, but could not be found as one.
+    unsure: Option<(GeneralPoint, Regular)>,
     outside: Outside,
     /// While the parameter does not vary.
     vertical: Option<Vertical>,
@@ -56,6 +60,8 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
             from_hopf: None,
             periods: Periods::default(),
             folds: Folds::default(),
+            turned: false,
+            unsure: None,
             outside: Outside::default(),
             vertical: Some(Vertical::default()),
         }
@@ -102,6 +108,7 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
             Met::Zero(watch, at) => self.zero((palc, before), watch, at, teller),
             Met::Point(now) => self.orbit(palc, now, before, teller),
         })?;
+        let _ = self.settle(teller);
         if end != Stop::Observer && self.inside {
             let point = self.end(&palc.now.here, &end.to_string());
             let _ = self.tell(GeneralEvent::Special(point), teller);
@@ -193,6 +200,15 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         Some(point.placed(self.set.branch.system.family, [vertical.uncertainty(), 0.0]))
     }
 
+    /// Tells what seemed to be a fold. On a step on which the parameter turns once one fold is met: then it is a pitchfork beside it.
+    fn settle(&mut self, teller: &mut Teller<'_>) -> ControlFlow<()> {
+        match self.unsure.take() {
+            Some((_, near)) if self.turned => teller.special(self.pitchfork(&near)),
+            Some((fold, _)) => teller.special(fold),
+            None => Continue(()),
+        }
+    }
+
     /// The next orbit: whether the branch goes on.
     fn orbit(
         &mut self,
@@ -201,6 +217,8 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         before: &DirectedPoint,
         teller: &mut Teller<'_>,
     ) -> ControlFlow<()> {
+        self.settle(teller)?;
+        self.turned = false;
         let here = &now.here;
         let last = &before.here.site;
         let ends_at = palc.ends_at_coordinate(last, &self.set.coordinates);
@@ -365,8 +383,15 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
             _ => special_orbit(family, (self.number, label), near, meets),
         };
         // At a pitchfork two branches cross, and a direction between them may make the parameter seem to turn. But no fold is found there.
-        if label == Label::Sn && orbit.is_none() && goes_on(before, &palc.now) {
-            point = self.pitchfork(near);
+        if label == Label::Sn && orbit.is_none() {
+            if goes_on(before, &palc.now) {
+                point = self.pitchfork(near);
+            } else {
+                self.settle(teller)?;
+                self.set.begins(self.number);
+                self.unsure = Some((point, near.clone()));
+                return Continue(());
+            }
         }
         let form = match label {
             Label::Pd => Some(Form::Doubling),
@@ -385,11 +410,13 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
             }
             (Label::Sn, Some(orbit)) => {
                 let site = &orbit.site;
+                self.turned |= !goes_on(before, &palc.now);
                 self.folds.push(site.at[FREE], site.shooting.period());
                 self.winding_end(&orbit)
             }
             _ => None,
         };
+        self.settle(teller)?;
         self.set.begins(self.number);
         teller.special(point)?;
         if let Some(end) = end {
@@ -415,9 +442,11 @@ fn turns(from: &DirectedPoint, at: &DirectedPoint, to: &DirectedPoint) -> bool {
     const ONCE: f64 = 0.02;
     const TWICE: f64 = 1e-3;
     let [from, at, to] = [from, at, to].map(|one| one.direction.parameters[FREE]);
-    let most = from.abs().max(to.abs());
+    let [least, most] = [from.abs().min(to.abs()), from.abs().max(to.abs())];
+    // Just behind a fold the slope is small and grows.
+    let goes_on = from * to > 0.0 && from * at > 0.0 && 2.0 * at.abs() >= least;
     let part = if from * to < 0.0 { ONCE } else { TWICE };
-    most < ROUNDING || at.abs() < part * most
+    most < ROUNDING || (!goes_on && at.abs() < part * most)
 }
 
 /// Whether all multipliers of an orbit are about those at a Hopf point. Else the branch has yet to pass what makes them so.
