@@ -1,6 +1,7 @@
 """Branches of periodic orbits of six oscillators with AUTO-07p and with twinslip, in turns on one core.
 
-To be started by run.sh. Prints one table: user CPU times, the ratio ours/AUTO, and the difference of every special point. Arguments: how
+To be started by run.sh. Prints one table: user CPU times, with AUTO at its cheapest mesh and at a usual one, the ratios ours/AUTO, and the difference
+of every special point. Arguments: how
 often (medians are printed), the program twinslip, and names of oscillators if not all are wanted.
 """
 
@@ -34,6 +35,8 @@ OSCILLATORS = [
     # The branch of bursts has no end that AUTO comes to; after 3000 steps it is at I = 3.19, and at another mesh elsewhere.
     ("hindmarsh-rose", "I", 1, 6, dict(NDIM=3, DS=0.01, DSMAX=0.1), dict(NTST=200, DS=0.01, DSMAX=0.5, NMX=3000)),
 ]
+# What one takes who does not know beforehand which mesh is enough.
+USUAL_MESH = 200
 # AUTO's types of points, and ours
 TYPES = {3: "HB", 5: "SN", 7: "PD", 8: "TR", 9: "EP", -4: "EP"}
 
@@ -121,21 +124,23 @@ def compare(theirs, finer, points):
 def main():
     repeats = int(sys.argv[1]) if len(sys.argv) > 1 else 3
     program = os.path.abspath(sys.argv[2] if len(sys.argv) > 2 else "target/release/twinslip")
-    print("%-18s %8s %8s %10s   AUTO's points" % ("system", "AUTO s", "ours s", "ours/AUTO"))
+    print("%-18s %8s %10s %8s %10s %10s   AUTO's points" % ("system", "AUTO s", "NTST=%d s" % USUAL_MESH, "ours s", "ours/AUTO", "NTST=%d" % USUAL_MESH))
     for name, parameter, low, high, steady, orbits in OSCILLATORS:
         if sys.argv[3:] and name not in sys.argv[3:]:
             continue
-        times = {"AUTO": [], "ours": []}
+        times = {"AUTO": [], "usual": [], "ours": []}
+        usual = {**orbits, "NTST": max(USUAL_MESH, orbits["NTST"])}
         for turn in range(repeats):
             theirs, time = spent(lambda: auto(name, low, high, steady, orbits))
             times["AUTO"].append(time)
+            times["usual"].append(spent(lambda: auto(name, low, high, steady, usual))[1])
             # one that takes minutes is not repeated
             if turn == 0 or times["ours"][0] < 60:
                 (points, more, code), time = spent(lambda: ours(program, name, parameter, low, high))
                 times["ours"].append(time)
-        a, o = (statistics.median(of) for of in times.values())
+        a, u, o = (statistics.median(of) for of in times.values())
         counts = ", ".join("%d %s" % (sum(p[0] == kind for p in theirs), kind) for kind in dict.fromkeys(p[0] for p in theirs))
-        print("%-18s %8.3f %8.3f %10.1f   %s" % (name, a, o, o / a, counts))
+        print("%-18s %8.3f %10.3f %8.3f %10.2f %10.2f   %s" % (name, a, u, o, o / a, o / u, counts))
         compare(theirs, auto(name, low, high, steady, orbits, finer=True), points)
         if code != 0 or more:
             print("    ours: exit status %d, %d more points on other branches" % (code, more))
