@@ -29,7 +29,7 @@ const AGREE: f64 = 0.2;
 const PASSED: f64 = 0.1;
 
 /// The coordinates and the periods of the orbits of a branch, as it goes.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Clone)]
 pub(super) struct Periods(Vec<[f64; 2]>);
 
 /// The coordinates and the periods at the folds of a branch, as they are met.
@@ -100,10 +100,13 @@ impl Periods {
         CORRECTED * all.fold(0.0, f64::max)
     }
 
-    /// Whether the last two orbits have the same coordinate but for that.
-    pub fn stay(&self) -> bool {
-        let last = self.0.last_chunk::<2>();
-        last.is_some_and(|[a, b]| (b[0] - a[0]).abs() <= self.off())
+    /// Whether the coordinate stayed the same, but for that, on so many of the last steps.
+    pub fn stay(&self, steps: usize) -> bool {
+        let Some(first) = self.0.len().checked_sub(steps + 1) else {
+            return false;
+        };
+        let mut pairs = self.0[first..].windows(2);
+        pairs.all(|pair| (pair[1][0] - pair[0][0]).abs() <= self.off())
     }
 
     /// The limit of the coordinate at the end of the branch, whose last orbit this is; `None` where the period does not grow without bound

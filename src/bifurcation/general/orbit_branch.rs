@@ -20,6 +20,9 @@ use std::ops::ControlFlow::{self, Break, Continue};
 /// The most steps on a branch.
 const STEPS: usize = 5000;
 
+/// Steps on which a parameter varies by no more than its error, behind which a branch whose period grows is followed no further.
+const STEADY: usize = 3;
+
 /// How many of the last orbits of a branch may say nothing of its limit.
 const LEFT_OUT: usize = 4;
 
@@ -117,28 +120,29 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
     }
 
     /// Where the branch goes no further, or tends to.
-    fn end(&mut self, last: &Regular, why: &str) -> GeneralPoint {
-        let point = self.set.row(self.number, last, Some(Label::Mx));
-        let branch = self.set.branch;
+    fn end(&self, last: &Regular, why: &str) -> GeneralPoint {
+        self.homoclinic_end(last).unwrap_or_else(|| GeneralPoint {
+            note: Some(why.to_owned()),
+            ..self.set.row(self.number, last, Some(Label::Mx))
+        })
+    }
+
+    /// Where the branch tends to as its period grows without bound, if it does.
+    fn homoclinic_end(&self, last: &Regular) -> Option<GeneralPoint> {
         // What is left of the way may be less than the last orbits are off by.
-        let periods = &mut self.periods;
+        let mut periods = self.periods.clone();
         let mut left_out = 0;
         let limit = loop {
-            let limit = periods.limit(branch, last);
-            if limit.is_some() || (left_out >= LEFT_OUT && !periods.stay()) {
-                break limit;
+            let limit = periods.limit(self.set.branch, last);
+            if limit.is_some() || (left_out >= LEFT_OUT && !periods.stay(1)) {
+                break limit?;
             }
             periods.pop();
             left_out += 1;
         };
-        let Some(Limit { at, is_saddle_node }) = limit else {
-            return GeneralPoint {
-                note: Some(why.to_owned()),
-                ..point
-            };
-        };
+        let point = self.set.row(self.number, last, None);
         let why = "the period grows without bound".to_owned();
-        self.longest(point, Limit { at, is_saddle_node }, why)
+        Some(self.longest(point, limit, why))
     }
 
     /// The end of a branch whose period grows without bound; all but that as at its last orbit.
@@ -266,7 +270,11 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         self.periods.push(site.at[FREE], site.shooting.period());
         let row = self.set.row(self.number, here, None);
         self.tell(GeneralEvent::Row(row), teller)?;
-        match self.vertical_end(palc, now) {
+        let end = match self.periods.stay(STEADY) {
+            true => self.homoclinic_end(here),
+            false => None,
+        };
+        match end.or_else(|| self.vertical_end(palc, now)) {
             Some(end) => {
                 let _ = self.tell(GeneralEvent::Special(end), teller);
                 Break(())
