@@ -7,8 +7,9 @@ use crate::series::{Accuracy, Expansion};
 use {
     super::ageing_lanes::AgeingLanes,
     super::lanes::{Lanes, Wide},
-    crate::friction::{AgeingForm, LawForm},
-    crate::series::{ByFormula, Eight, Four},
+    super::series::InStates,
+    crate::friction::LawForm,
+    crate::series::{Eight, Four, LaneFormula},
 };
 
 /// The most lanes that there are.
@@ -52,15 +53,16 @@ pub fn batch_solution(law: AnyLaw) -> Option<Box<dyn BatchSolution>> {
     None
 }
 
-/// By the recurrences that the law has of its own, or by its formula.
+/// By the recurrences that the law has of its own, or by its recorded formula.
 #[cfg(target_arch = "x86_64")]
-fn lanes<S, E: Wide>(simd: S, form: LawForm, zero: E) -> Box<dyn BatchSolution>
+fn lanes<S, E: Wide>(simd: S, law: LawForm, zero: E) -> Box<dyn BatchSolution>
 where
-    Lanes<S, E, AgeingForm, AgeingLanes<E>>: BatchSolution + 'static,
-    Lanes<S, E, LawForm, ByFormula>: BatchSolution + 'static,
+    Lanes<S, E, AgeingLanes<E>>: BatchSolution + 'static,
+    Lanes<S, E, LaneFormula<E>>: BatchSolution + 'static,
 {
-    match form.undamped_ageing() {
-        Some(form) => Box::new(Lanes::new(simd, form, zero, AgeingLanes::new(zero))),
-        None => Box::new(Lanes::new(simd, form, zero, ByFormula)),
+    if law.undamped_ageing().is_some() {
+        return Box::new(Lanes::new(simd, law, zero, AgeingLanes::new(zero)));
     }
+    let recorded = LaneFormula::new(&InStates(law), false, zero);
+    Box::new(Lanes::new(simd, law, zero, recorded))
 }

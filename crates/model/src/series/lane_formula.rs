@@ -1,0 +1,101 @@
+//! A recorded formula that makes the coefficients of a [`super::Stepper`]: in every lane at its own parameters and in its own unit of time.
+
+use super::ROOM;
+use super::assembly::RecordedFormula;
+use super::compiled::{Compiled, expand};
+use super::element::Element;
+use super::equations::Equations;
+use super::program::{Program, Source};
+use super::program_rows::ProgramRows;
+use super::trace::{Graph, Traced};
+use pulp::NullaryFnOnce;
+
+/// The formula of N variables and P parameters, and the series that were made of it last.
+pub(crate) struct LaneFormula<T: Element> {
+    rows: ProgramRows<T>,
+    compiled: Option<Compiled<T>>,
+    /// What it gives after the rates.
+    others: Vec<Source>,
+}
+
+impl<T: Element> LaneFormula<T> {
+    /// The formula, which gives after its rates both slip rates; with `slopes` also, for one variable after the other, the derivatives in it of
+    /// these and of all rates but the first. `any` is any number.
+    #[cold]
+    #[inline(never)]
+    pub fn new<S: Equations<N, P>, const N: usize, const P: usize>(
+        equations: &S,
+        slopes: bool,
+        any: T,
+    ) -> Self {
+        let graph = Graph::default();
+        let x: [_; N] = std::array::from_fn(|i| graph.variable(i, 1.0));
+        // Variables that stay: a number would be the same in all lanes.
+        let parameters: [_; P] = std::array::from_fn(|q| graph.variable(N + q, 1.0));
+        let mut outputs = equations.rates(x, parameters).to_vec();
+        let own_rates = outputs[1..].to_vec();
+        outputs.resize(N + P, Traced::Constant(0.0.into()));
+        let slip_rates = equations.slip_rates(x, parameters);
+        let mut others: Vec<_> = slip_rates.into_iter().flatten().collect();
+        outputs.extend(&others);
+        if slopes {
+            others.extend(own_rates);
+            (0..N).for_each(|i| outputs.extend(graph.derivatives(&others, i)));
+        }
+        Self::of(
+            &RecordedFormula::new(&graph, N + P, &outputs).program(&[]),
+            any,
+        )
+    }
+
+    fn of(program: &Program, any: T) -> Self {
+        let rows = ProgramRows::new(program, ROOM, any);
+        LaneFormula {
+            compiled: Compiled::of(&rows, any),
+            rows,
+            others: program.outputs[program.variables()..].to_vec(),
+        }
+    }
+
+    /// Makes the series that begin at these variables and parameters, to an order, in that unit of time.
+    #[inline(never)]
+    pub fn expand(&mut self, begin: &[T], order: usize, unit: T) {
+        unit.run(Expand {
+            formula: self,
+            begin,
+            order,
+            unit,
+        });
+    }
+
+    /// The series of the i-th variable.
+    #[inline(always)]
+    pub fn variable(&self, i: usize) -> &[T] {
+        self.rows.row(i)
+    }
+
+    /// The k-th coefficient of what it gives, the i-th after the rates.
+    #[inline(always)]
+    pub fn other(&self, i: usize, k: usize) -> T {
+        self.rows.coefficient(self.others[i], k)
+    }
+}
+
+/// All orders, to be compiled for the processor.
+struct Expand<'a, T: Element> {
+    formula: &'a mut LaneFormula<T>,
+    begin: &'a [T],
+    order: usize,
+    unit: T,
+}
+
+impl<T: Element> NullaryFnOnce for Expand<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let LaneFormula { rows, compiled, .. } = self.formula;
+        let order_and_unit = (self.order, self.unit);
+        expand((rows, compiled.as_mut()), self.begin, order_and_unit);
+    }
+}
