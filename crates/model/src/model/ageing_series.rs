@@ -19,10 +19,10 @@
 //! and P are linear in the newest v. So the sums of four orders are made at once, out of pairs of rows side by side: what is read of
 //! memory is what limits them.
 
-use super::series::{InStates, Interfaces, PSI, SLIP_RATE, TAU};
-use crate::friction::AgeingForm;
+use super::series::{InStates, Interfaces, PSI, SLIP_RATE, Slopes as FormulaSlopes, TAU, order};
+use super::tangent::Linearised;
 use crate::series::{
-    Element, Four, JacobianTerm, LaneFormula, ONE_OVER, Pair, ROOM, Recurrences, avx512,
+    Element, Four, JacobianTerm, KeptFormula, ONE_OVER, Pair, ROOM, Recurrences, avx512,
 };
 use pulp::x86::{V3, V4};
 use std::cell::Cell;
@@ -71,7 +71,7 @@ pub(super) struct AgeingRecurrences<const LINEARISED: bool> {
     /// The Jacobian along the series made last.
     jacobian: [JacobianTerm; ROOM],
     /// The formula, once it was needed.
-    formula: Option<Box<LaneFormula<f64>>>,
+    formula: Option<KeptFormula>,
 }
 
 /// Coefficients of one interface.
@@ -101,12 +101,17 @@ impl<const LINEARISED: bool> AgeingRecurrences<LINEARISED> {
     }
 }
 
-impl AgeingRecurrences<true> {
-    /// The Jacobian along the series made last.
-    pub fn jacobian(&self) -> &[JacobianTerm] {
-        &self.jacobian
+impl Linearised for AgeingRecurrences<true> {
+    fn order(rtol: f64) -> usize {
+        order(rtol)
     }
 
+    fn jacobian(&self) -> &[JacobianTerm] {
+        &self.jacobian
+    }
+}
+
+impl AgeingRecurrences<true> {
     /// The k-th coefficients of the i-th interface.
     #[inline(always)]
     pub fn interface(&self, i: usize, k: usize) -> InterfaceTerm {
@@ -154,58 +159,41 @@ impl<const LINEARISED: bool> AgeingRecurrences<LINEARISED> {
         order: usize,
         unit: Pair,
     ) {
-        let record = || Box::new(LaneFormula::new(&InStates(interfaces.law), LINEARISED, 0.0));
+        let record = || KeptFormula::new(InStates(interfaces.law), LINEARISED);
         let mut made = self.formula.take().unwrap_or_else(record);
         made.make(interfaces, memory, order, unit);
-        let (unit, stiffness) = (unit.first(), interfaces.stiffness.first());
         if LINEARISED {
-            self.take(&made, &interfaces.law.ageing, (order, unit), stiffness);
+            self.take(&made, interfaces, (order, unit.first()));
         }
         self.formula = Some(made);
     }
 
     /// The Jacobian, and the series that [`AgeingRecurrences::interface`] tells of, from the formula's derivatives.
-    fn take(
-        &mut self,
-        made: &LaneFormula<f64>,
-        law: &AgeingForm,
-        (order, unit): (usize, f64),
-        stiffness: f64,
-    ) {
-        /// Both slip rates and both states' rates have derivatives in the stress, in psi_1 and in psi_2.
-        const EACH: usize = 4;
-        let pull = -(stiffness * unit);
+    fn take(&mut self, made: &KeptFormula, formula: &Interfaces, (order, unit): (usize, f64)) {
+        let law = &formula.law.ageing;
         let psi = [0, 1].map(|i| made.variable(1 + i));
-        // In the i-th interface's variables: of the slip rate, and two further on of the state's rate.
-        let in_stress = |i: usize| 2 + i;
-        let in_state = |i: usize| 2 + EACH * (1 + i) + i;
-        let strength = |i: usize, k: usize| psi[i][k] * law.strength[1];
-        let first = [0, 1].map(|i| strength(i, 0) + law.strength[0]);
-        let sliding = [0, 1].map(|i| -made.other(i, 0).sign() * unit);
+        let begin = psi.map(|psi| psi[0]);
+        let any = self.first[0];
         let mut p = [[0.0; ROOM]; 2];
         for k in 0..order {
-            let of = |at: &dyn Fn(usize) -> usize| [0, 1].map(|i| made.other(at(i), k));
-            let (v, v_tau, v_psi) = (of(&|i| i), of(&in_stress), of(&in_state));
-            let (g_tau, g_psi) = (of(&|i| in_stress(i) + 2), of(&|i| in_state(i) + 2));
-            let stress = (v_tau[0] + v_tau[1]) * pull;
-            self.jacobian[k] = JacobianTerm {
-                stress: [0, 1].map(|i| [stress, v_psi[i] * (pull * psi[i][0])]),
-                states: [0, 1].map(|i| [g_tau[i] * (unit / psi[i][0]), g_psi[i] * unit]),
-            };
-            let ([mut rates, mut slopes], any) = ([[0.0; 4]; 2], self.first[0]);
-            for i in 0..2 {
+            let slopes = FormulaSlopes::of(made, k);
+            self.jacobian[k] = slopes.jacobian(begin, formula.stiffness.first(), unit);
+            let of_interface = |i: usize| {
+                let strength = |j: usize| psi[i][j] * law.strength[1];
+                let first = strength(0) + law.strength[0];
                 // P a = beta a'
-                let mut sum = strength(i, k + 1) * law.beta * (k + 1) as f64;
-                for j in 1..=k {
-                    sum -= strength(i, j) * p[i][k - j];
-                }
-                p[i][k] = sum / first[i];
+                let of_strength = strength(k + 1) * law.beta * (k + 1) as f64;
+                let older = (1..=k).map(|j| strength(j) * p[i][k - j]);
+                let p = (of_strength - older.sum::<f64>()) / first;
                 // dv/dpsi = -beta a_1 v/a
-                let u = v_psi[i] * first[i] / -(law.beta * law.strength[1]);
-                [rates[2 * i], rates[2 * i + 1]] = [v[i] * sliding[i], -p[i][k]];
-                [slopes[2 * i], slopes[2 * i + 1]] = [v_tau[i], u];
-            }
-            let [rates, slopes] = [rates, slopes].map(|lanes| any.like_lanes(lanes));
+                let u = slopes.v_psi[i] * first / -(law.beta * law.strength[1]);
+                let sliding = -(Element::sign(made.other(i, 0)) * unit);
+                ([slopes.v[i] * sliding, -p], [slopes.v_tau[i], u])
+            };
+            let [(one, of_one), (other, of_other)] = [0, 1].map(of_interface);
+            (p[0][k], p[1][k]) = (-one[1], -other[1]);
+            let rates = any.like_lanes([one[0], one[1], other[0], other[1]]);
+            let slopes = any.like_lanes([of_one[0], of_one[1], of_other[0], of_other[1]]);
             match k {
                 0 => self.first = [rates, slopes],
                 _ => [self.right[k][1], self.right[k][2]] = [rates, slopes],

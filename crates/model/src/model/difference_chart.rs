@@ -16,7 +16,7 @@ use crate::series::Equations;
 use crate::{
     number::DoubleDouble,
     series::{
-        Accuracy, Expansion, Formula, LaneFormula, ROOM, Recurrences, Solution, Stepper, Tangent,
+        Accuracy, Expansion, Formula, KeptFormula, ROOM, Recurrences, Solution, Stepper, Tangent,
     },
 };
 #[cfg(target_arch = "x86_64")]
@@ -86,7 +86,7 @@ impl Equations<3, 2> for DifferenceChart {
         };
         Some(Box::new(ChartSolution {
             stepper: Stepper::new(formula, 0.0),
-            recurrences: LaneFormula::new(self, false, 0.0),
+            recurrences: KeptFormula::new(*self, false),
         }))
     }
 
@@ -131,7 +131,7 @@ impl Formula<f64, 3> for At {
 }
 
 #[cfg(target_arch = "x86_64")]
-impl Recurrences<f64, At, 3> for LaneFormula<f64> {
+impl Recurrences<f64, At, 3> for KeptFormula {
     fn make(&mut self, formula: &At, memory: &[Cell<f64>], order: usize, unit: f64) {
         let [driving, stiffness] = formula.parameters;
         let [tau, second, gap] = [0, 1, 2].map(|i| memory[i * ROOM].get());
@@ -148,7 +148,7 @@ impl Recurrences<f64, At, 3> for LaneFormula<f64> {
 #[cfg(target_arch = "x86_64")]
 struct ChartSolution {
     stepper: Stepper<f64, At, 3>,
-    recurrences: LaneFormula<f64>,
+    recurrences: KeptFormula,
 }
 
 #[cfg(target_arch = "x86_64")]

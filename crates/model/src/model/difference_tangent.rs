@@ -27,7 +27,7 @@
 use super::Loading;
 use super::ageing_series::{AgeingRecurrences, Best};
 use super::series::{Interfaces, order};
-use super::tangent::{Expand, larger, mean_traces};
+use super::tangent::{Expand, Linearised, larger, mean_traces};
 use crate::friction::AgeingForm;
 use crate::number::DoubleDouble;
 use crate::series::{

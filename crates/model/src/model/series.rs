@@ -8,14 +8,14 @@ use super::{Loading, stress_rate};
 use crate::friction::LawForm;
 use crate::number::{DoubleDouble, Real};
 use crate::series::{
-    Accuracy, Element, Equations, Expansion, Formula, LaneFormula, MAX_ORDER, ONE_OVER, Pair, ROOM,
-    Recurrences, Solution, Stepper, avx2, usual_order,
+    Accuracy, Element, Equations, Expansion, Formula, JacobianTerm, KeptFormula, MAX_ORDER,
+    ONE_OVER, Pair, ROOM, Recurrences, Solution, Stepper, avx2, usual_order,
 };
 use pulp::x86::V3;
 use std::cell::Cell;
 
 /// (19) in (tau, psi_1, psi_2), with the parameters V_H and K.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct InStates(pub LawForm);
 
 impl Equations<3, 2> for InStates {
@@ -95,7 +95,7 @@ impl Formula<Pair, 2> for Interfaces {
 }
 
 /// By the recorded formula.
-impl Recurrences<Pair, Interfaces, 2> for LaneFormula<f64> {
+impl Recurrences<Pair, Interfaces, 2> for KeptFormula {
     fn make(&mut self, formula: &Interfaces, memory: &[Cell<Pair>], order: usize, unit: Pair) {
         let [first, second] = memory[PSI * ROOM].get().lanes();
         let tau = memory[TAU * ROOM].get();
@@ -108,6 +108,42 @@ impl Recurrences<Pair, Interfaces, 2> for LaneFormula<f64> {
             memory[PSI * ROOM + k + 1].set(unit.like_lanes([first, second]));
             let v = [0, 1].map(|i| self.other(i, k));
             memory[SLIP_RATE * ROOM + k].set(unit.like_lanes(v));
+        }
+    }
+}
+
+/// The coefficients of one order of v, dv/dtau, dv/dpsi, dg/dtau and dg/dpsi of both interfaces, g = dpsi/dt.
+pub(super) struct Slopes {
+    pub v: [f64; 2],
+    pub v_tau: [f64; 2],
+    pub v_psi: [f64; 2],
+    g_tau: [f64; 2],
+    g_psi: [f64; 2],
+}
+
+impl Slopes {
+    /// Those of a formula that gives slopes.
+    #[inline(always)]
+    pub fn of(made: &KeptFormula, k: usize) -> Self {
+        // For tau, psi_1 and psi_2 one after the other: of both slip rates, and of both states' rates.
+        let of = |place: fn(usize) -> usize| [0, 1].map(|i| made.other(place(i), k));
+        Slopes {
+            v: of(|i| i),
+            v_tau: of(|i| 2 + i),
+            v_psi: of(|i| 2 + 4 * (1 + i) + i),
+            g_tau: of(|i| 4 + i),
+            g_psi: of(|i| 4 + 4 * (1 + i) + i),
+        }
+    }
+
+    /// The Jacobian, where the step begins at these states.
+    #[inline(always)]
+    pub fn jacobian(&self, psi: [f64; 2], stiffness: f64, unit: f64) -> JacobianTerm {
+        let pull = -(stiffness * unit);
+        let stress = (self.v_tau[0] + self.v_tau[1]) * pull;
+        JacobianTerm {
+            stress: [0, 1].map(|i| [stress, self.v_psi[i] * (pull * psi[i])]),
+            states: [0, 1].map(|i| [self.g_tau[i] * (unit / psi[i]), self.g_psi[i] * unit]),
         }
     }
 }
@@ -141,7 +177,7 @@ pub(super) fn solution<const N: usize>(
             simd,
             best,
             stepper,
-            recurrences: Box::new(LaneFormula::new(&InStates(law), false, 0.0)),
+            recurrences: Box::new(KeptFormula::new(InStates(law), false)),
             order: usual_order,
         }),
     })

@@ -1,28 +1,30 @@
 //! Two equal interfaces with their tangents in power series.
 //!
 //! The Jacobian's entries along the solution come with its series, for both interfaces at once, by the recurrences that laws have of
-//! their own. The linearised equations of all columns are then sums of products with them, see [`VariationalEquations`].
+//! their own, or by the recorded formula with its derivatives. The linearised equations of all columns are then sums of products with them, see [`VariationalEquations`].
 
 use super::Loading;
 use super::ageing_series::{AgeingRecurrences, Best};
-use super::series::{Interfaces, chart, copy, order};
+use super::series::{InStates, Interfaces, Slopes, chart, copy};
 use crate::friction::LawForm;
 use crate::number::DoubleDouble;
 use crate::series::{
-    Accuracy, Along, Derivatives, Eight, Element, Expansion, Four, JacobianTerm, ONE_OVER, Pair,
-    Solution, Stepper, Tangent, VariationalEquations, avx2, longest_of_terms,
+    Accuracy, Along, Derivatives, Eight, Element, Expansion, Four, JacobianTerm, KeptFormula,
+    ONE_OVER, Pair, ROOM, Recurrences, Solution, Stepper, Tangent, VariationalEquations, avx2,
+    longest_of_terms, usual_order,
 };
 use pulp::NullaryFnOnce;
+use std::cell::Cell;
 
 /// A solution with the columns that are the derivatives in its start, and in V_H and K where those are asked for.
-struct TangentSolution<X> {
+struct TangentSolution<R, X> {
     best: Best,
     /// V_H and K of the pair that moves as the system does, per those of the system.
     weights: [f64; 2],
     /// The places of the parameters in which derivatives are asked for.
     free: Vec<usize>,
     stepper: Stepper<Pair, Interfaces, 2>,
-    recurrences: Box<AgeingRecurrences<true>>,
+    recurrences: Box<R>,
     /// The derivatives in the start, then those in parameters, as many in each as X has lanes.
     columns: Vec<VariationalEquations<X>>,
     stiffness: f64,
@@ -35,8 +37,43 @@ struct TangentSolution<X> {
     start: [f64; 2],
 }
 
-/// A solution with its derivatives in its start and in the parameters of these places, by recurrences of its own, for laws and processors
-/// that have these.
+/// Coefficients that come with the Jacobian's along them.
+pub(super) trait Linearised: Recurrences<Pair, Interfaces, 2> {
+    /// The order with which they take the least time for a relative tolerance.
+    fn order(rtol: f64) -> usize;
+    /// That of those made last.
+    fn jacobian(&self) -> &[JacobianTerm];
+}
+
+/// By the recorded formula with its derivatives.
+struct BySlopes {
+    formula: KeptFormula,
+    jacobian: [JacobianTerm; ROOM],
+}
+
+impl Recurrences<Pair, Interfaces, 2> for BySlopes {
+    fn make(&mut self, formula: &Interfaces, memory: &[Cell<Pair>], order: usize, unit: Pair) {
+        self.formula.make(formula, memory, order, unit);
+        let psi = [1, 2].map(|i| self.formula.variable(i)[0]);
+        for (k, term) in self.jacobian[..order].iter_mut().enumerate() {
+            let slopes = Slopes::of(&self.formula, k);
+            *term = slopes.jacobian(psi, formula.stiffness.first(), unit.first());
+        }
+    }
+}
+
+impl Linearised for BySlopes {
+    fn order(rtol: f64) -> usize {
+        usual_order(rtol)
+    }
+
+    fn jacobian(&self) -> &[JacobianTerm] {
+        &self.jacobian
+    }
+}
+
+/// A solution with its derivatives in its start and in the parameters of these places, in the vector registers of this processor, if it
+/// has any: by the recurrences that the law has of its own, or by its recorded formula.
 pub(super) fn tangent<const N: usize>(
     law: LawForm,
     loading: Loading,
@@ -44,25 +81,31 @@ pub(super) fn tangent<const N: usize>(
     free: &[usize],
 ) -> Option<Box<dyn Tangent<N>>> {
     let simd = avx2()?;
-    law.undamped_ageing()?;
     let best = Best::new(simd);
     let stepper = Interfaces::stepper(law, &loading, simd);
-    let recurrences = Box::new(AgeingRecurrences::new(simd));
     let asked = Asked {
         best,
         weights,
         free,
         stiffness: loading.stiffness,
     };
+    let four = Four::new(simd, [0.0; 4]);
+    if law.undamped_ageing().is_none() {
+        let by_slopes = Box::new(BySlopes {
+            formula: KeptFormula::new(InStates(law), true),
+            jacobian: [JacobianTerm::ZERO; ROOM],
+        });
+        return Some(Box::new(
+            asked.solution::<_, _, N>(stepper, by_slopes, four),
+        ));
+    }
+    let recurrences = Box::new(AgeingRecurrences::<true>::new(simd));
     Some(match best.wide() {
         Some(wide) if N + free.len() > Four::LANES => {
-            let any = Eight::new(wide, [0.0; 8]);
-            Box::new(asked.solution::<_, N>(stepper, recurrences, any))
+            let eight = Eight::new(wide, [0.0; 8]);
+            Box::new(asked.solution::<_, _, N>(stepper, recurrences, eight))
         }
-        _ => {
-            let any = Four::new(simd, [0.0; 4]);
-            Box::new(asked.solution::<_, N>(stepper, recurrences, any))
-        }
+        _ => Box::new(asked.solution::<_, _, N>(stepper, recurrences, four)),
     })
 }
 
@@ -76,12 +119,12 @@ struct Asked<'a> {
 
 impl Asked<'_> {
     /// A solution of a system of N variables, made by these; the columns are as `any`.
-    fn solution<X: Element, const N: usize>(
+    fn solution<R, X: Element, const N: usize>(
         self,
         stepper: Stepper<Pair, Interfaces, 2>,
-        recurrences: Box<AgeingRecurrences<true>>,
+        recurrences: Box<R>,
         any: X,
-    ) -> TangentSolution<X> {
+    ) -> TangentSolution<R, X> {
         let directions = N + self.free.len();
         let columns = (0..directions.div_ceil(X::LANES))
             .map(|_| VariationalEquations::new([any; 3], any, any))
@@ -102,7 +145,7 @@ impl Asked<'_> {
     }
 }
 
-impl<X: Element> TangentSolution<X> {
+impl<R: Linearised, X: Element> TangentSolution<R, X> {
     #[inline(always)]
     fn step(&mut self, accuracy: &Accuracy, limit: f64) -> f64 {
         let order = accuracy.order;
@@ -171,13 +214,13 @@ pub(super) fn larger(a: f64, b: f64) -> f64 {
 }
 
 /// The series of the solution, to be compiled for the processor. Apart from the rest of a step: it is by far the most code.
-pub(super) struct Expand<'a> {
+pub(super) struct Expand<'a, R> {
     pub stepper: &'a mut Stepper<Pair, Interfaces, 2>,
-    pub recurrences: &'a mut AgeingRecurrences<true>,
+    pub recurrences: &'a mut R,
     pub accuracy: &'a Accuracy,
 }
 
-impl NullaryFnOnce for Expand<'_> {
+impl<R: Linearised> NullaryFnOnce for Expand<'_, R> {
     type Output = ();
     #[inline(always)]
     fn call(self) {
@@ -186,13 +229,13 @@ impl NullaryFnOnce for Expand<'_> {
 }
 
 /// A step whose series are made, to be compiled for the processor.
-struct TangentStep<'a, X> {
-    track: &'a mut TangentSolution<X>,
+struct TangentStep<'a, R, X> {
+    track: &'a mut TangentSolution<R, X>,
     accuracy: &'a Accuracy,
     limit: f64,
 }
 
-impl<X: Element> NullaryFnOnce for TangentStep<'_, X> {
+impl<R: Linearised, X: Element> NullaryFnOnce for TangentStep<'_, R, X> {
     type Output = f64;
     #[inline(always)]
     fn call(self) -> f64 {
@@ -200,9 +243,9 @@ impl<X: Element> NullaryFnOnce for TangentStep<'_, X> {
     }
 }
 
-impl<X: Element, const N: usize> Solution<N> for TangentSolution<X> {
+impl<R: Linearised, X: Element, const N: usize> Solution<N> for TangentSolution<R, X> {
     fn order(&self, rtol: f64) -> usize {
-        order(rtol)
+        R::order(rtol)
     }
 
     fn start(&mut self, y: &[f64; N]) {
@@ -232,7 +275,7 @@ impl<X: Element, const N: usize> Solution<N> for TangentSolution<X> {
         let best = self.best;
         best.vectorize(Expand {
             stepper: &mut self.stepper,
-            recurrences: &mut self.recurrences,
+            recurrences: &mut *self.recurrences,
             accuracy,
         });
         let step = TangentStep {
@@ -253,7 +296,7 @@ impl<X: Element, const N: usize> Solution<N> for TangentSolution<X> {
     }
 }
 
-impl<X: Element, const N: usize> Tangent<N> for TangentSolution<X> {
+impl<R: Linearised, X: Element, const N: usize> Tangent<N> for TangentSolution<R, X> {
     fn derivatives(&self) -> Derivatives<N> {
         let column = |direction: usize| {
             let columns = &self.columns[direction / X::LANES];

@@ -9,6 +9,9 @@ use super::program::{Program, Source};
 use super::program_rows::ProgramRows;
 use super::trace::{Graph, Traced};
 use pulp::NullaryFnOnce;
+use std::any::Any;
+use std::cell::RefCell;
+use std::ops::{Deref, DerefMut};
 
 /// The formula of N variables and P parameters, and the series that were made of it last.
 pub(crate) struct LaneFormula<T: Element> {
@@ -78,6 +81,70 @@ impl<T: Element> LaneFormula<T> {
     #[inline(always)]
     pub fn other(&self, i: usize, k: usize) -> T {
         self.rows.coefficient(self.others[i], k)
+    }
+}
+
+/// Formulas that are kept in each thread while nobody uses them: recording one takes longer than a short arc.
+const KEPT: usize = 8;
+
+thread_local! {
+    /// With what they are the formulas of. The newest last.
+    static IDLE: RefCell<Vec<Known>> = const { RefCell::new(Vec::new()) };
+}
+
+/// A formula, and what it is of: the equations, and whether it gives slopes.
+struct Known {
+    of: Box<dyn Any>,
+    formula: Box<LaneFormula<f64>>,
+}
+
+/// A formula that others use after this one.
+pub(crate) struct KeptFormula(Option<Known>);
+
+impl KeptFormula {
+    /// As of [`LaneFormula::new`].
+    pub fn new<S, const N: usize, const P: usize>(equations: S, slopes: bool) -> Self
+    where
+        S: Equations<N, P> + PartialEq + 'static,
+    {
+        let of = (equations, slopes);
+        let is_it = |known: &Known| known.of.downcast_ref() == Some(&of);
+        let idle = IDLE.with_borrow_mut(|all| {
+            let at = all.iter().rposition(is_it)?;
+            Some(all.remove(at))
+        });
+        KeptFormula(Some(idle.unwrap_or_else(|| Known {
+            formula: Box::new(LaneFormula::new(&of.0, slopes, 0.0)),
+            of: Box::new(of),
+        })))
+    }
+}
+
+impl Deref for KeptFormula {
+    type Target = LaneFormula<f64>;
+
+    fn deref(&self) -> &LaneFormula<f64> {
+        &self.0.as_ref().expect("it is in use").formula
+    }
+}
+
+impl DerefMut for KeptFormula {
+    fn deref_mut(&mut self) -> &mut LaneFormula<f64> {
+        &mut self.0.as_mut().expect("it is in use").formula
+    }
+}
+
+impl Drop for KeptFormula {
+    fn drop(&mut self) {
+        let known = self.0.take();
+        // Where the thread ends nothing keeps it.
+        let _ = IDLE.try_with(|all| {
+            let mut all = all.borrow_mut();
+            if all.len() == KEPT {
+                all.remove(0);
+            }
+            all.extend(known);
+        });
     }
 }
 

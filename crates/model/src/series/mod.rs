@@ -65,7 +65,7 @@ pub(crate) use element::Element;
 pub use equations::Equations;
 pub use event::{Passage, Section, Zeros};
 #[cfg(target_arch = "x86_64")]
-pub(crate) use lane_formula::LaneFormula;
+pub(crate) use lane_formula::{KeptFormula, LaneFormula};
 #[cfg(target_arch = "x86_64")]
 pub(crate) use lanes::{Eight, Four, Pair};
 #[cfg(target_arch = "x86_64")]
