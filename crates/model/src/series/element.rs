@@ -8,7 +8,7 @@ use twinslip_kernel::{Kernel, Width};
 
 /// A coefficient of a series.
 ///
-/// The lanes of a pair are the two interfaces under one stress, whose sum the stress balance needs; the lanes of a batch are
+/// The lanes of a pair are the two interfaces under one stress; the lanes of a batch are
 /// trajectories that have nothing to do with each other.
 pub trait Element:
     Copy
