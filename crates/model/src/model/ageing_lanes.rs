@@ -4,8 +4,7 @@
 //! orders at once.
 
 use super::ageing_series::NEAR;
-use super::lanes::{PSI, SLIP_RATES, TAU, Trajectories};
-use super::series::InStates;
+use super::in_states::{InStates, PSI, SLIP_RATES, TAU, Trajectories};
 use crate::friction::AgeingForm;
 use crate::series::{Element, LaneFormula, ONE_OVER, ROOM, Recurrences};
 use std::cell::Cell;

@@ -19,7 +19,8 @@
 //! and P are linear in the newest v. So the sums of four orders are made at once, out of pairs of rows side by side: what is read of
 //! memory is what limits them.
 
-use super::series::{InStates, Interfaces, PSI, SLIP_RATE, Slopes as FormulaSlopes, TAU, order};
+use super::in_states::InStates;
+use super::series::{Interfaces, PSI, SLIP_RATE, Slopes as FormulaSlopes, TAU, order};
 use super::tangent::Linearised;
 use crate::series::{
     Element, Four, JacobianTerm, KeptFormula, ONE_OVER, Pair, ROOM, Recurrences, avx512,

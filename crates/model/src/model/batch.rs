@@ -6,8 +6,8 @@ use crate::series::{Accuracy, Expansion};
 #[cfg(target_arch = "x86_64")]
 use {
     super::ageing_lanes::AgeingLanes,
+    super::in_states::InStates,
     super::lanes::Lanes,
-    super::series::InStates,
     crate::series::{Eight, Four, LaneFormula},
 };
 

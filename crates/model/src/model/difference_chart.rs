@@ -10,16 +10,12 @@
 use super::{Driven, Loading, Parameter, Smooth, stress_rate};
 use crate::field::State;
 use crate::friction::{AnyLaw, Law, LawForm};
-use crate::number::{Difference, Real};
-use crate::series::Equations;
+use crate::number::{Difference, DoubleDouble, Real};
 #[cfg(target_arch = "x86_64")]
-use crate::{
-    number::DoubleDouble,
-    series::{
-        Accuracy, Expansion, Formula, KeptFormula, ROOM, Recurrences, Solution, Stepper, Tangent,
-    },
+use crate::series::Tangent;
+use crate::series::{
+    Accuracy, Equations, Expansion, Formula, KeptFormula, ROOM, Recurrences, Solution, Stepper,
 };
-#[cfg(target_arch = "x86_64")]
 use std::cell::Cell;
 
 /// dtau/dt = K (V_H - v_1 - v_2), dw_2/dt = g(v_2, w_2), d(ln D)/dt = (dpsi_1/dt - dpsi_2/dt) / D, in the parameters
@@ -77,7 +73,6 @@ impl Equations<3, 2> for DifferenceChart {
 
     // Exponentials of the stress and the states hide in no series: the next step sees all that they have grown by in one. With other
     // laws, and with damping, the end of every step is checked.
-    #[cfg(target_arch = "x86_64")]
     fn own_solution(&self, parameters: [f64; 2]) -> Option<Box<dyn Solution<3>>> {
         self.form.undamped_ageing()?;
         let formula = At {
@@ -106,14 +101,12 @@ impl Equations<3, 2> for DifferenceChart {
 }
 
 /// The chart at a loading.
-#[cfg(target_arch = "x86_64")]
 #[derive(Clone, Copy)]
 struct At {
     chart: DifferenceChart,
     parameters: [f64; 2],
 }
 
-#[cfg(target_arch = "x86_64")]
 impl Formula<f64, 3> for At {
     fn rates(&self, x: &[f64; 3]) -> [f64; 3] {
         self.chart.rates(*x, self.parameters)
@@ -130,7 +123,6 @@ impl Formula<f64, 3> for At {
     }
 }
 
-#[cfg(target_arch = "x86_64")]
 impl Recurrences<f64, At, 3> for KeptFormula {
     fn make(&mut self, formula: &At, memory: &[Cell<f64>], order: usize, unit: f64) {
         let [driving, stiffness] = formula.parameters;
@@ -145,13 +137,11 @@ impl Recurrences<f64, At, 3> for KeptFormula {
 }
 
 /// A solution whose steps need no check at their ends.
-#[cfg(target_arch = "x86_64")]
 struct ChartSolution {
     stepper: Stepper<f64, At, 3>,
     recurrences: KeptFormula,
 }
 
-#[cfg(target_arch = "x86_64")]
 impl Solution<3> for ChartSolution {
     fn start(&mut self, y: &[f64; 3]) {
         self.stepper.start(*y);

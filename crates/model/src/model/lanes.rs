@@ -2,90 +2,9 @@
 
 use super::Loading;
 use super::batch::{BatchSolution, MAX_LANES};
-use super::series::{InStates, logarithms};
+use super::in_states::{Trajectories, logarithms};
 use crate::friction::LawForm;
-use crate::series::{
-    Accuracy, Eight, Element, Equations, Expansion, Formula, Four, LaneFormula, ROOM, Recurrences,
-    Stepper,
-};
-use std::cell::Cell;
-
-/// Rows in the memory: the variables', and those of the slip rates.
-pub(super) const TAU: usize = 0;
-pub(super) const PSI: [usize; 2] = [1, 2];
-pub(super) const SLIP_RATES: [usize; 2] = [3, 4];
-
-/// Both interfaces of a trajectory in every lane of E, variables (tau, psi_1, psi_2).
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Trajectories<E> {
-    pub law: LawForm,
-    pub driving: E,
-    pub stiffness: E,
-}
-
-impl<E: Element> Formula<E, 3> for Trajectories<E> {
-    fn rates(&self, x: &[E; 3]) -> [E; 3] {
-        let mut rates = *x;
-        for lane in 0..E::LANES {
-            let at = x.map(|x| x.lane(lane));
-            let loading = [self.driving, self.stiffness].map(|x| x.lane(lane));
-            let here = InStates(self.law).rates(at, loading);
-            for (all, here) in rates.iter_mut().zip(here) {
-                *all = all.with_lane(lane, here);
-            }
-        }
-        rates
-    }
-
-    #[inline(always)]
-    fn units(&self, [tau, p, q]: &[E; 3], (rtol, atol): (f64, f64)) -> [E; 3] {
-        let of_tau = tau.abs().mul_add(tau.like(rtol), tau.like(atol));
-        let of_psi = tau.like(atol + rtol);
-        [of_tau, *p * of_psi, *q * of_psi]
-    }
-
-    #[inline(always)]
-    fn allows(&self, [tau, p, q]: &[E; 3]) -> E {
-        // psi_1 where psi_2 allows it, and no number where tau is not finite.
-        let zero = tau.like(0.0);
-        tau.mul_add(zero, *q)
-            .if_positive(tau.mul_add(zero, *p), tau.like(-1.0))
-    }
-}
-
-impl<E: Element> Trajectories<E> {
-    /// The series by the recorded formula, in the lanes where this is negative.
-    #[inline(always)]
-    pub fn expand_where(
-        &self,
-        these: E,
-        recorded: &mut LaneFormula<E>,
-        memory: &[Cell<E>],
-        (order, unit): (usize, E),
-    ) {
-        let [tau, p, q] = [TAU, PSI[0], PSI[1]].map(|row| memory[row * ROOM].get());
-        recorded.expand(&[tau, p, q, self.driving, self.stiffness], order, unit);
-        let put = |row: usize, k: usize, made: E| {
-            let x = &memory[row * ROOM + k];
-            x.set(these.if_negative(made, x.get()));
-        };
-        for k in 0..order {
-            for (i, row) in [TAU, PSI[0], PSI[1]].into_iter().enumerate() {
-                put(row, k + 1, recorded.variable(i)[k + 1]);
-            }
-            for (i, row) in SLIP_RATES.into_iter().enumerate() {
-                put(row, k, recorded.other(i, k));
-            }
-        }
-    }
-}
-
-impl<E: Element> Recurrences<E, Trajectories<E>, 3> for LaneFormula<E> {
-    #[inline(always)]
-    fn make(&mut self, formula: &Trajectories<E>, memory: &[Cell<E>], order: usize, unit: E) {
-        formula.expand_where(unit.like(-1.0), self, memory, (order, unit));
-    }
-}
+use crate::series::{Accuracy, Eight, Element, Expansion, Four, Recurrences, Stepper};
 
 /// An element whose lanes are trajectories.
 pub(super) trait Wide: Element {

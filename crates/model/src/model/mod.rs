@@ -13,6 +13,7 @@ pub mod classics;
 mod difference_chart;
 #[cfg(target_arch = "x86_64")]
 mod difference_tangent;
+mod in_states;
 #[cfg(target_arch = "x86_64")]
 mod lanes;
 mod logarithmic;

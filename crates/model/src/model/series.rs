@@ -1,50 +1,16 @@
-//! Two equal interfaces in power series, in the state (tau, psi_1, psi_2).
-//!
-//! In psi a law takes two series fewer than in ln psi, an exponential and a quotient. Two equal interfaces are the symmetric
-//! subspace, and one interface is two equal ones driven twice as fast by a spring half as stiff, so one code serves all.
+//! Two equal interfaces in the vector registers of an x86-64 processor, both in one, in power series.
 
+use super::Loading;
 use super::ageing_series::{AgeingRecurrences, Best};
-use super::{Loading, stress_rate};
+use super::in_states::{InStates, Integral, Motion, chart, logarithms};
 use crate::friction::LawForm;
-use crate::number::{DoubleDouble, Real};
+use crate::number::DoubleDouble;
 use crate::series::{
-    Accuracy, Element, Equations, Expansion, Formula, JacobianTerm, KeptFormula, MAX_ORDER,
-    ONE_OVER, Pair, ROOM, Recurrences, Solution, Stepper, avx2, usual_order,
+    Accuracy, Element, Equations, Expansion, Formula, JacobianTerm, KeptFormula, MAX_ORDER, Pair,
+    ROOM, Recurrences, Solution, Stepper, avx2,
 };
 use pulp::x86::V3;
 use std::cell::Cell;
-
-/// (19) in (tau, psi_1, psi_2), with the parameters V_H and K.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct InStates(pub LawForm);
-
-impl Equations<3, 2> for InStates {
-    const PARAMETERS: [&'static str; 2] = super::Parameter::LOADING;
-
-    fn rates<T: Real>(&self, x: [T; 3], [driving, stiffness]: [T; 2]) -> [T; 3] {
-        let [first, second] = self.motions(x);
-        [
-            stress_rate((driving, stiffness), first.0 + second.0),
-            first.1,
-            second.1,
-        ]
-    }
-
-    fn slip_rates<T: Real>(&self, x: [T; 3], _: [T; 2]) -> [Option<T>; 2] {
-        self.motions(x).map(|(v, _)| Some(v))
-    }
-}
-
-impl InStates {
-    /// v and dpsi/dt of both interfaces.
-    fn motions<T: Real>(&self, [tau, first, second]: [T; 3]) -> [(T, T); 2] {
-        let activation = self.0.activation(tau);
-        [first, second].map(|psi| {
-            let v = self.0.slip_rate(activation, psi);
-            (v, self.0.evolution(v, psi))
-        })
-    }
-}
 
 /// Rows in the memory: the variables', and that of v.
 pub(super) const TAU: usize = 0;
@@ -74,6 +40,12 @@ impl Interfaces {
 
 impl Formula<Pair, 2> for Interfaces {
     fn rates(&self, &[tau, psi]: &[Pair; 2]) -> [Pair; 2] {
+        if let Some(law) = self.law.undamped_ageing() {
+            let both = Motion::of(&law, tau, psi);
+            let [first, second] = (both.slip_rate * both.factor).lanes();
+            let of_tau = (self.driving - tau.like(first + second)) * self.stiffness;
+            return [of_tau, both.evolution];
+        }
         let [first, second] = psi.lanes();
         let loading = [self.driving.first(), self.stiffness.first()];
         let [of_tau, first, second] =
@@ -148,39 +120,27 @@ impl Slopes {
     }
 }
 
-/// A solution in N = 2 or 3 dimensions, whose coefficients R makes.
-struct PairSolution<R> {
+/// A solution in N = 2 or 3 dimensions.
+struct PairSolution {
     simd: V3,
     best: Best,
     stepper: Stepper<Pair, Interfaces, 2>,
-    recurrences: Box<R>,
-    order: fn(f64) -> usize,
+    recurrences: Box<AgeingRecurrences<false>>,
 }
 
-/// A solution in the vector registers of this processor, if it has any: by the recurrences that the law has of its own, or by its recorded
-/// formula.
+/// A solution by recurrences of its own, for laws and processors that have these.
 pub(super) fn solution<const N: usize>(
     law: LawForm,
     loading: &Loading,
 ) -> Option<Box<dyn Solution<N>>> {
+    law.undamped_ageing()?;
     let simd = avx2()?;
-    let (best, stepper) = (Best::new(simd), Interfaces::stepper(law, loading, simd));
-    Some(match law.undamped_ageing() {
-        Some(_) => Box::new(PairSolution {
-            simd,
-            best,
-            stepper,
-            recurrences: Box::new(AgeingRecurrences::<false>::new(simd)),
-            order,
-        }),
-        None => Box::new(PairSolution {
-            simd,
-            best,
-            stepper,
-            recurrences: Box::new(KeptFormula::new(InStates(law), false)),
-            order: usual_order,
-        }),
-    })
+    Some(Box::new(PairSolution {
+        simd,
+        best: Best::new(simd),
+        stepper: Interfaces::stepper(law, loading, simd),
+        recurrences: Box::new(AgeingRecurrences::new(simd)),
+    }))
 }
 
 /// The order with which the recurrences take the least time for a relative tolerance.
@@ -192,14 +152,14 @@ pub(super) fn order(rtol: f64) -> usize {
 }
 
 /// A step of a pair, to be compiled for the processor's vector instructions.
-struct PairStep<'a, R> {
+struct PairStep<'a> {
     stepper: &'a mut Stepper<Pair, Interfaces, 2>,
-    recurrences: &'a mut R,
+    recurrences: &'a mut AgeingRecurrences<false>,
     accuracy: &'a Accuracy,
     limit: f64,
 }
 
-impl<R: Recurrences<Pair, Interfaces, 2>> pulp::NullaryFnOnce for PairStep<'_, R> {
+impl pulp::NullaryFnOnce for PairStep<'_> {
     type Output = f64;
     #[inline(always)]
     fn call(self) -> f64 {
@@ -210,9 +170,9 @@ impl<R: Recurrences<Pair, Interfaces, 2>> pulp::NullaryFnOnce for PairStep<'_, R
     }
 }
 
-impl<R: Recurrences<Pair, Interfaces, 2>, const N: usize> Solution<N> for PairSolution<R> {
+impl<const N: usize> Solution<N> for PairSolution {
     fn order(&self, rtol: f64) -> usize {
-        (self.order)(rtol)
+        order(rtol)
     }
 
     fn start(&mut self, y: &[f64; N]) {
@@ -251,46 +211,6 @@ impl<R: Recurrences<Pair, Interfaces, 2>, const N: usize> Solution<N> for PairSo
     }
 }
 
-/// The integral of a series over a time.
-struct Integral<'a> {
-    rates: &'a [Pair],
-    time: Pair,
-    unit: Pair,
-}
-
-impl pulp::NullaryFnOnce for Integral<'_> {
-    type Output = Pair;
-    /// With the order a constant the sums are unrolled.
-    #[inline(always)]
-    fn call(self) -> Pair {
-        match self.rates.len() {
-            12 => self.sum(12),
-            16 => self.sum(16),
-            20 => self.sum(20),
-            24 => self.sum(24),
-            order => self.sum(order),
-        }
-    }
-}
-
-impl Integral<'_> {
-    /// To an even order; even and odd terms apart, for two short chains.
-    #[inline(always)]
-    fn sum(&self, order: usize) -> Pair {
-        let rates = &self.rates[..order];
-        let s = self.time / self.unit;
-        let (squared, zero) = (s * s, s.like(0.0));
-        let (mut even, mut odd) = (zero, zero);
-        let mut k = order;
-        while k > 0 {
-            k -= 2;
-            even = even.mul_add(squared, rates[k] * s.like(ONE_OVER[k + 1]));
-            odd = odd.mul_add(squared, rates[k + 1] * s.like(ONE_OVER[k + 2]));
-        }
-        odd.mul_add(s, even) * self.time
-    }
-}
-
 /// The series of the last step.
 pub(super) fn copy<const N: usize>(
     stepper: &Stepper<Pair, Interfaces, 2>,
@@ -312,19 +232,4 @@ pub(super) fn copy<const N: usize>(
         into.slip_rates[0][j] = first;
         into.slip_rates[1][j] = second;
     }
-}
-
-/// (tau, x_1, x_2), or (tau, x_1) where both are equal.
-pub(super) fn chart<const N: usize>(tau: f64, x: [f64; 2]) -> [f64; N] {
-    let mut all = [tau; N];
-    all[1..].copy_from_slice(&x[..N - 1]);
-    all
-}
-
-/// From (tau, psi) to (tau, ln psi).
-pub(super) fn logarithms<const N: usize>(mut x: [f64; N]) -> [f64; N] {
-    for psi in &mut x[1..] {
-        *psi = psi.max(f64::MIN_POSITIVE).ln();
-    }
-    x
 }

@@ -34,7 +34,6 @@ pub trait Slab<const N: usize> {
 }
 
 /// The two equal interfaces that move as these do.
-#[cfg(target_arch = "x86_64")]
 fn pair<const N: usize>(slab: &impl Slab<N>) -> Loading {
     let Loading { driving, stiffness } = slab.loading();
     let [of_driving, of_stiffness] = slab.weights();
@@ -124,7 +123,7 @@ impl<S: Slab<N>, const N: usize> Analytic<N> for S {
         if let Some(own) = super::series::solution(self.law().form(), &pair(self)) {
             return own;
         }
-        in_loading(self).solution()
+        super::in_states::solution(self.law().form(), &pair(self))
     }
 
     fn reference(&self) -> Box<dyn Solution<N> + '_> {

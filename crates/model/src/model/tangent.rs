@@ -5,7 +5,8 @@
 
 use super::Loading;
 use super::ageing_series::{AgeingRecurrences, Best};
-use super::series::{InStates, Interfaces, Slopes, chart, copy};
+use super::in_states::{InStates, chart};
+use super::series::{Interfaces, Slopes, copy};
 use crate::friction::LawForm;
 use crate::number::DoubleDouble;
 use crate::series::{

@@ -45,10 +45,9 @@ impl<T: Element> LaneFormula<T> {
             others.extend(own_rates);
             (0..N).for_each(|i| outputs.extend(graph.derivatives(&others, i)));
         }
-        Self::of(
-            &RecordedFormula::new(&graph, N + P, &outputs).program(&[]),
-            any,
-        )
+        let program = RecordedFormula::new(&graph, N + P, &outputs).program(&[]);
+        assert!(!program.branches, "it holds everywhere");
+        Self::of(&program, any)
     }
 
     fn of(program: &Program, any: T) -> Self {

@@ -31,7 +31,6 @@ mod first_order;
 #[cfg(target_arch = "x86_64")]
 mod functions;
 mod interpreted;
-#[cfg(target_arch = "x86_64")]
 mod lane_formula;
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod lanes;
@@ -45,7 +44,6 @@ mod program_rows;
 mod recent;
 mod recorded;
 mod rounding;
-#[cfg(target_arch = "x86_64")]
 mod stepper;
 mod trace;
 mod transport;
@@ -64,7 +62,6 @@ pub use cubic::Jet3;
 pub(crate) use element::Element;
 pub use equations::Equations;
 pub use event::{Passage, Section, Zeros};
-#[cfg(target_arch = "x86_64")]
 pub(crate) use lane_formula::{KeptFormula, LaneFormula};
 #[cfg(target_arch = "x86_64")]
 pub(crate) use lanes::{Eight, Four, Pair};
@@ -73,7 +70,6 @@ pub(crate) use linearised::longest_of_terms;
 pub(crate) use recorded::{ByRecording, Recorded, RecordedExpressions};
 #[doc(hidden)]
 pub use recorded::{both_ways, columns_both_ways};
-#[cfg(target_arch = "x86_64")]
 pub(crate) use stepper::{Formula, Recurrences, Stepper};
 pub use transport::TaylorMap;
 pub use vectors::{VARIABLE as VECTORS, Vectors, allowed as allowed_vectors, used as used_vectors};

@@ -89,6 +89,7 @@ impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
     }
 
     /// The formula, whose constants may change between solutions.
+    #[cfg(target_arch = "x86_64")]
     pub fn formula_mut(&mut self) -> &mut F {
         &mut self.formula
     }
@@ -99,6 +100,7 @@ impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
     }
 
     /// Puts this in the place of the i-th variable, where it is known better.
+    #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     pub fn replace(&mut self, i: usize, x: E) {
         self.x[i] = x;
@@ -141,6 +143,7 @@ impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
     }
 
     /// A bound on how far the i-th variable strays from where the series begins, within this time.
+    #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     pub fn reach(&self, i: usize, order: usize, time: E) -> E {
         let h = (time / self.unit).abs();
