@@ -184,7 +184,7 @@ impl<const N: usize> Solution<N> for PairSolution {
     fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble {
         let step = PairStep {
             stepper: &mut self.stepper,
-            recurrences: &mut *self.recurrences,
+            recurrences: &mut self.recurrences,
             accuracy,
             limit: limit.hi(),
         };
