@@ -67,11 +67,26 @@ impl<E: Element> Recurrences<E, Trajectories<E>, 3> for AgeingLanes<E> {
         let far = tau.abs() - tau.like(NEAR);
         self.expand(formula, memory, order, unit);
         if !far.none_negative() {
-            // Every lane by itself: what it holds does not depend on the others.
-            let record = || Box::new(LaneFormula::new(&InStates(formula.law), false, unit));
-            let recorded = self.recorded.get_or_insert_with(record);
-            formula.expand_where(far, recorded, memory, (order, unit));
+            self.expand_near(far, formula, memory, (order, unit));
         }
+    }
+}
+
+impl<E: Element> AgeingLanes<E> {
+    /// The series in the lanes where this is negative by the recorded formula. Every lane by itself: what it holds does not depend on the
+    /// others.
+    #[cold]
+    #[inline(never)]
+    fn expand_near(
+        &mut self,
+        far: E,
+        formula: &Trajectories<E>,
+        memory: &[Cell<E>],
+        (order, unit): (usize, E),
+    ) {
+        let record = || Box::new(LaneFormula::new(&InStates(formula.law), false, unit));
+        let recorded = self.recorded.get_or_insert_with(record);
+        formula.expand_where(far, recorded, memory, (order, unit));
     }
 }
 
