@@ -3,6 +3,7 @@
 
 mod arcs;
 mod rosenbrock;
+mod series;
 #[cfg(feature = "sundials")]
 mod sundials;
 mod sweep;

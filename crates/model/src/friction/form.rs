@@ -86,84 +86,6 @@ impl LawForm {
     }
 }
 
-/// v and g = dpsi/dt with their derivatives in tau and psi.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Slopes<T> {
-    pub v: T,
-    pub v_tau: T,
-    pub v_psi: T,
-    pub g: T,
-    pub g_tau: T,
-    pub g_psi: T,
-}
-
-impl LawForm {
-    /// The law with its first derivatives written out, in half the operations that jets take, and half the code: it is compiled into
-    /// the series of tangents. Tests hold it to jets of the laws' own formulas.
-    ///
-    /// With u = eta v = g(y), y + g(y) = tau, and dg/dy = s'(y) eta/h: du/dtau = (dg/dy) / (1 + dg/dy), du/dpsi = -(u/h) (dh/dpsi) / (1 +
-    /// dg/dy).
-    #[inline(always)]
-    pub(crate) fn slopes<T: Real>(&self, tau: T, psi: T) -> Slopes<T> {
-        let AgeingForm {
-            strength: [_, linear],
-            healing: [_, growth],
-            beta,
-            gamma0,
-            exponential,
-        } = self.ageing;
-        let a = self.ageing.linear_strength(psi);
-        let weakness = a.powf(-beta);
-        let (v, v_tau, v_psi) = if self.damping == 0.0 {
-            let (v, v_tau) = if exponential {
-                let v = weakness * tau.exp() * (0.5 * gamma0);
-                (v, v)
-            } else {
-                let (sinh, cosh) = tau.sinh_cosh();
-                (weakness * sinh * gamma0, weakness * cosh * gamma0)
-            };
-            (v, v_tau, v / a * -(beta * linear))
-        } else {
-            let rate = weakness * gamma0 * self.damping;
-            let (u, slope) = if exponential {
-                let u = tau.balanced(Balance::Exponential(rate * 0.5)).1;
-                (u, u)
-            } else {
-                let (y, u) = tau.balanced(Balance::Sinh(rate));
-                (u, rate * y.cosh())
-            };
-            let whole = slope + 1.0;
-            (
-                u / self.damping,
-                slope / whole / self.damping,
-                u / (a * whole) * -(beta * linear / self.damping),
-            )
-        };
-        let (g, g_tau, g_psi) = if self.slip_law {
-            let x = v * psi;
-            let log = x.ln();
-            let falls = -(log + 1.0);
-            (-(x * log), falls * psi * v_tau, falls * (v + psi * v_psi))
-        } else {
-            let sign = v.sign();
-            let magnitude = v * sign;
-            (
-                self.ageing.evolution(v, psi),
-                -(v_tau * psi * sign),
-                -(v_psi * psi * sign) - magnitude + growth,
-            )
-        };
-        Slopes {
-            v,
-            v_tau,
-            v_psi,
-            g,
-            g_tau,
-            g_psi,
-        }
-    }
-}
-
 impl AgeingForm {
     /// v = gamma0 sinh(tau) psi^(-beta), dpsi/dt = 1 - |v| psi.
     pub(super) fn of_ageing(beta: f64, gamma0: f64) -> Self {
@@ -201,12 +123,6 @@ impl AgeingForm {
         } else {
             tau.sinh() * self.gamma0
         }
-    }
-
-    /// v
-    #[inline(always)]
-    pub(crate) fn slip_rate<T: Real>(&self, activation: T, psi: T) -> T {
-        activation * self.weakness(psi)
     }
 
     /// dpsi/dt

@@ -21,7 +21,6 @@ mod steady;
 mod unequal;
 
 pub use damped::Damped;
-pub(crate) use form::Slopes;
 pub use form::{AgeingForm, LawForm};
 #[doc(hidden)]
 pub use rounding::{Rounded, effects, rounding};

@@ -4,18 +4,17 @@
 //! orders at once.
 
 use super::ageing_series::NEAR;
-use super::lanes::Trajectories;
+use super::in_states::{InStates, PSI, SLIP_RATES, TAU, Trajectories};
 use crate::friction::AgeingForm;
-use crate::series::{ByFormula, Element, ONE_OVER, ROOM, Recurrences, WATCHED};
+use crate::series::{Element, LaneFormula, ONE_OVER, ROOM, Recurrences};
 use std::cell::Cell;
 
-/// Rows in the memory: the variables', and those of the slip rates.
-const TAU: usize = 0;
-const PSI: [usize; 2] = [1, 2];
-const SLIP_RATES: [usize; 2] = [3, 4];
-
-/// The series that the sums are made of, of each interface.
-pub(super) struct AgeingLanes<E>([Factors<E>; 2]);
+pub(super) struct AgeingLanes<E: Element> {
+    /// The series that the sums are made of, of each interface.
+    factors: [Factors<E>; 2],
+    /// The formula, once it was needed.
+    recorded: Option<Box<LaneFormula<E>>>,
+}
 
 /// Those of one interface.
 struct Factors<E> {
@@ -54,54 +53,40 @@ impl<E: Element> AgeingLanes<E> {
             left: [[zero; 3]; ROOM],
             right: [[zero; 4]; ROOM],
         };
-        AgeingLanes([nothing(), nothing()])
+        AgeingLanes {
+            factors: [nothing(), nothing()],
+            recorded: None,
+        }
     }
 }
 
-impl<E: Element> Recurrences<E, Trajectories<E, AgeingForm>, 3> for AgeingLanes<E> {
+impl<E: Element> Recurrences<E, Trajectories<E>, 3> for AgeingLanes<E> {
     #[inline(always)]
-    fn make(
-        &mut self,
-        formula: &Trajectories<E, AgeingForm>,
-        memory: &[Cell<E>],
-        order: usize,
-        unit: E,
-    ) -> [Option<usize>; WATCHED] {
-        const WATCHED_ROWS: [Option<usize>; WATCHED] = {
-            let [first, second] = SLIP_RATES;
-            [
-                Some(first),
-                Some(second),
-                Some(first),
-                Some(first),
-                Some(first),
-            ]
-        };
+    fn make(&mut self, formula: &Trajectories<E>, memory: &[Cell<E>], order: usize, unit: E) {
         let tau = memory[TAU * ROOM].get();
         let far = tau.abs() - tau.like(NEAR);
-        if far.none_negative() {
-            self.expand(formula, memory, order, unit);
-            return WATCHED_ROWS;
-        }
-        // Every lane by itself: what it holds does not depend on the others.
-        let watched = ByFormula.make(formula, memory, order, unit);
-        let [first, second, ..] = watched.map(|row| row.unwrap_or(TAU));
-        let rows = [TAU, PSI[0], PSI[1], first, second];
-        let near = rows.map(|row| {
-            let mut kept = [unit; ROOM];
-            for (kept, x) in kept.iter_mut().zip(&memory[row * ROOM..(row + 1) * ROOM]) {
-                *kept = x.get();
-            }
-            kept
-        });
         self.expand(formula, memory, order, unit);
-        let rows = [TAU, PSI[0], PSI[1], SLIP_RATES[0], SLIP_RATES[1]];
-        for (near, row) in near.iter().zip(rows) {
-            for (near, x) in near.iter().zip(&memory[row * ROOM..(row + 1) * ROOM]) {
-                x.set(far.if_negative(*near, x.get()));
-            }
+        if !far.none_negative() {
+            self.expand_near(far, formula, memory, (order, unit));
         }
-        WATCHED_ROWS
+    }
+}
+
+impl<E: Element> AgeingLanes<E> {
+    /// The series in the lanes where this is negative by the recorded formula. Every lane by itself: what it holds does not depend on the
+    /// others.
+    #[cold]
+    #[inline(never)]
+    fn expand_near(
+        &mut self,
+        far: E,
+        formula: &Trajectories<E>,
+        memory: &[Cell<E>],
+        (order, unit): (usize, E),
+    ) {
+        let record = || Box::new(LaneFormula::new(&InStates(formula.law), false, unit));
+        let recorded = self.recorded.get_or_insert_with(record);
+        formula.expand_where(far, recorded, memory, (order, unit));
     }
 }
 
@@ -201,14 +186,8 @@ impl<E: Element> Interface<E> {
 impl<E: Element> AgeingLanes<E> {
     /// The series to this order, which is even, as all are.
     #[inline(always)]
-    fn expand(
-        &mut self,
-        formula: &Trajectories<E, AgeingForm>,
-        memory: &[Cell<E>],
-        order: usize,
-        unit: E,
-    ) {
-        let form = &formula.law;
+    fn expand(&mut self, formula: &Trajectories<E>, memory: &[Cell<E>], order: usize, unit: E) {
+        let form = &formula.law.ageing;
         let tau = memory[TAU * ROOM].get();
         let zero = tau.like(0.0);
         let exp = tau.exp();
@@ -235,7 +214,7 @@ impl<E: Element> AgeingLanes<E> {
         let mut sums = [[zero; 4]; 2];
         loop {
             // With the newest terms.
-            let [first, second] = &self.0;
+            let [first, second] = &self.factors;
             first.add(&mut sums[0], 0, k - 1);
             second.add(&mut sums[1], 0, k - 1);
             if k > 1 {
@@ -247,7 +226,7 @@ impl<E: Element> AgeingLanes<E> {
             if k >= order {
                 break;
             }
-            let [first, second] = &self.0;
+            let [first, second] = &self.factors;
             let (one, next_one) = first.sums(zero, k);
             let (two, next_two) = second.sums(zero, k);
             last = self.next(&known, memory, k, [one, two], newest_b(&last), zero);
@@ -282,7 +261,7 @@ impl<E: Element> AgeingLanes<E> {
         memory[TAU * ROOM + k + 1].set(stress * over_next);
         memory[PSI[0] * ROOM + k + 1].set(first.0[2] * each[0].psi_per_b);
         memory[PSI[1] * ROOM + k + 1].set(second.0[2] * each[1].psi_per_b);
-        let [of_first, of_second] = &mut self.0;
+        let [of_first, of_second] = &mut self.factors;
         (of_first.left[k], of_first.right[k]) = first;
         (of_second.left[k], of_second.right[k]) = second;
         [first, second]

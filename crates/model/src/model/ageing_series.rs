@@ -1,6 +1,5 @@
 //! Series of two interfaces of laws that are powers of a linear strength and whose state ages, by recurrences of their own: an
-//! optimisation. The laws' formulas on [`crate::series::Series`] serve for everything else and near tau = 0, and tests hold this to
-//! them.
+//! optimisation. The laws' recorded formulas serve for everything else and near tau = 0, and tests hold this to them.
 //!
 //! For v = s(tau) a^(-beta), a = a_0 + a_1 psi, dpsi/dt = g_0 + g_1 psi - |v| psi, with b = a_1 psi / a(0) and
 //!
@@ -20,13 +19,11 @@
 //! and P are linear in the newest v. So the sums of four orders are made at once, out of pairs of rows side by side: what is read of
 //! memory is what limits them.
 
-use super::Loading;
-use super::series::{Interfaces, PairStep, stepper};
-use super::tangent::{Linearised, LinearisedInterfaces, jacobian_of_rows};
-use crate::friction::AgeingForm;
+use super::in_states::InStates;
+use super::series::{Interfaces, PSI, SLIP_RATE, Slopes as FormulaSlopes, TAU, order};
+use super::tangent::Linearised;
 use crate::series::{
-    Accuracy, ByFormula, Element, Four, JacobianTerm, MAX_ORDER, ONE_OVER, Pair, ROOM, Recurrences,
-    Stepper, WATCHED, avx512,
+    Element, Four, JacobianTerm, KeptFormula, ONE_OVER, Pair, ROOM, Recurrences, avx512,
 };
 use pulp::x86::{V3, V4};
 use std::cell::Cell;
@@ -35,14 +32,6 @@ use std::cell::Cell;
 pub(super) const NEAR: f64 = 0.5;
 /// Orders whose sums are made at once.
 const BLOCK: usize = 4;
-
-/// Rows in the memory: the variables', and that of v.
-const TAU: usize = 0;
-const PSI: usize = 1;
-const SLIP_RATE: usize = 2;
-
-/// Two interfaces of such a law.
-type AgeingInterfaces = Interfaces<Pair, AgeingForm>;
 
 /// The vector instructions of this processor.
 #[derive(Clone, Copy)]
@@ -71,45 +60,6 @@ impl Best {
     }
 }
 
-/// A solution by them.
-pub(super) struct AgeingSolution {
-    pub simd: V3,
-    best: Best,
-    pub stepper: Stepper<Pair, AgeingInterfaces, 2>,
-    recurrences: Box<AgeingRecurrences<false>>,
-}
-
-impl AgeingSolution {
-    /// To be started.
-    pub fn new(form: AgeingForm, loading: &Loading, simd: V3) -> Self {
-        AgeingSolution {
-            simd,
-            best: Best::new(simd),
-            stepper: stepper(form, loading, Pair::new(simd, [0.0; 2])),
-            recurrences: Box::new(AgeingRecurrences::new(simd)),
-        }
-    }
-
-    /// The order with which it takes the least time for a relative tolerance.
-    pub fn order(rtol: f64) -> usize {
-        /// Tolerances above which lower orders win.
-        const FROM: [(f64, usize); 3] = [(2e-6, 12), (4e-9, 16), (3e-11, 20)];
-        let least = FROM.iter().find(|(above, _)| rtol > *above);
-        least.map_or(MAX_ORDER, |(_, order)| *order)
-    }
-
-    /// [`crate::series::Solution::advance`].
-    pub fn advance(&mut self, accuracy: &Accuracy, limit: f64) -> f64 {
-        let step = PairStep {
-            stepper: &mut self.stepper,
-            recurrences: &mut *self.recurrences,
-            accuracy,
-            limit,
-        };
-        self.best.vectorize(step)
-    }
-}
-
 /// The series that the sums are made of. In a register stand both interfaces, each with two lanes.
 pub(super) struct AgeingRecurrences<const LINEARISED: bool> {
     /// e_j, and b_(j+1): (e+, e-), (b, b).
@@ -121,6 +71,8 @@ pub(super) struct AgeingRecurrences<const LINEARISED: bool> {
     first: [Four; 2],
     /// The Jacobian along the series made last.
     jacobian: [JacobianTerm; ROOM],
+    /// The formula, once it was needed.
+    formula: Option<KeptFormula>,
 }
 
 /// Coefficients of one interface.
@@ -145,7 +97,18 @@ impl<const LINEARISED: bool> AgeingRecurrences<LINEARISED> {
             right: [[zero; 3]; ROOM],
             first: [zero; 2],
             jacobian: [JacobianTerm::ZERO; ROOM],
+            formula: None,
         }
+    }
+}
+
+impl Linearised for AgeingRecurrences<true> {
+    fn order(rtol: f64) -> usize {
+        order(rtol)
+    }
+
+    fn jacobian(&self) -> &[JacobianTerm] {
+        &self.jacobian
     }
 }
 
@@ -168,40 +131,15 @@ impl AgeingRecurrences<true> {
     }
 }
 
-impl Linearised<Pair, AgeingInterfaces> for AgeingRecurrences<true> {
-    fn order(rtol: f64) -> usize {
-        AgeingSolution::order(rtol)
-    }
-
-    fn jacobian(&self) -> &[JacobianTerm] {
-        &self.jacobian
-    }
-}
-
-impl<const LINEARISED: bool> Recurrences<Pair, AgeingInterfaces, 2>
-    for AgeingRecurrences<LINEARISED>
-{
+impl<const LINEARISED: bool> Recurrences<Pair, Interfaces, 2> for AgeingRecurrences<LINEARISED> {
     #[inline(always)]
-    fn make(
-        &mut self,
-        formula: &AgeingInterfaces,
-        memory: &[Cell<Pair>],
-        order: usize,
-        unit: Pair,
-    ) -> [Option<usize>; WATCHED] {
+    fn make(&mut self, formula: &Interfaces, memory: &[Cell<Pair>], order: usize, unit: Pair) {
         let tau = memory[TAU * ROOM].get();
         let far = (tau.abs() - tau.like(NEAR)).none_negative();
-        if far && order.is_multiple_of(BLOCK) && self.expand(formula, memory, order, unit) {
-            return [Some(SLIP_RATE); WATCHED];
+        let holds = far && order.is_multiple_of(BLOCK);
+        if !(holds && self.expand(formula, memory, order, unit)) {
+            self.expand_by_formula(formula, memory, order, unit);
         }
-        if !LINEARISED {
-            return ByFormula.make(formula, memory, order, unit);
-        }
-        let watched = ByFormula.make(&LinearisedInterfaces(*formula), memory, order, unit);
-        let jacobian = &mut self.jacobian[..order];
-        jacobian_of_rows(jacobian, memory, &watched, formula.stiffness, unit);
-        self.take(formula, memory, &watched, order, unit);
-        watched
     }
 }
 
@@ -212,36 +150,51 @@ fn plus(a: Right, b: Right) -> Right {
 }
 
 impl<const LINEARISED: bool> AgeingRecurrences<LINEARISED> {
-    /// The series that [`Self::interface`] tells of, from those of the formula.
-    fn take(
+    /// The series by the recorded formula, which holds for all states.
+    #[cold]
+    #[inline(never)]
+    fn expand_by_formula(
         &mut self,
-        formula: &AgeingInterfaces,
+        interfaces: &Interfaces,
         memory: &[Cell<Pair>],
-        watched: &[Option<usize>; WATCHED],
         order: usize,
         unit: Pair,
     ) {
-        let form = &formula.law;
-        let (psi, any) = (&memory[PSI * ROOM..][..ROOM], unit);
-        let row = |i: usize, k: usize| match watched[i] {
-            Some(row) => memory[row * ROOM + k].get(),
-            None => any.like(0.0),
-        };
-        let strength = |k: usize| psi[k].get() * any.like(form.strength[1]);
-        let first = strength(0) + any.like(form.strength[0]);
-        let sliding = -(row(0, 0).sign() * unit);
-        let mut p = [any.like(0.0); ROOM];
+        let record = || KeptFormula::new(InStates(interfaces.law), LINEARISED);
+        let mut made = self.formula.take().unwrap_or_else(record);
+        made.make(interfaces, memory, order, unit);
+        if LINEARISED {
+            self.take(&made, interfaces, (order, unit.first()));
+        }
+        self.formula = Some(made);
+    }
+
+    /// The Jacobian, and the series that [`AgeingRecurrences::interface`] tells of, from the formula's derivatives.
+    fn take(&mut self, made: &KeptFormula, formula: &Interfaces, (order, unit): (usize, f64)) {
+        let law = &formula.law.ageing;
+        let psi = [0, 1].map(|i| made.variable(1 + i));
+        let begin = psi.map(|psi| psi[0]);
+        let any = self.first[0];
+        let mut p = [[0.0; ROOM]; 2];
         for k in 0..order {
-            // P a = beta a'
-            let mut sum = strength(k + 1) * any.like(form.beta * (k + 1) as f64);
-            for j in 1..=k {
-                sum = sum - strength(j) * p[k - j];
-            }
-            p[k] = sum / first;
-            let rates = (row(0, k) * sliding).twice().beside((-p[k]).twice());
-            // dv/dpsi = -beta a_1 v/a
-            let u = row(2, k) * first / any.like(-form.beta * form.strength[1]);
-            let slopes = row(1, k).twice().beside(u.twice());
+            let slopes = FormulaSlopes::of(made, k);
+            self.jacobian[k] = slopes.jacobian(begin, formula.stiffness.first(), unit);
+            let of_interface = |i: usize| {
+                let strength = |j: usize| psi[i][j] * law.strength[1];
+                let first = strength(0) + law.strength[0];
+                // P a = beta a'
+                let of_strength = strength(k + 1) * law.beta * (k + 1) as f64;
+                let older = (1..=k).map(|j| strength(j) * p[i][k - j]);
+                let p = (of_strength - older.sum::<f64>()) / first;
+                // dv/dpsi = -beta a_1 v/a
+                let u = slopes.v_psi[i] * first / -(law.beta * law.strength[1]);
+                let sliding = -(Element::sign(made.other(i, 0)) * unit);
+                ([slopes.v[i] * sliding, -p], [slopes.v_tau[i], u])
+            };
+            let [(one, of_one), (other, of_other)] = [0, 1].map(of_interface);
+            (p[0][k], p[1][k]) = (-one[1], -other[1]);
+            let rates = any.like_lanes([one[0], one[1], other[0], other[1]]);
+            let slopes = any.like_lanes([of_one[0], of_one[1], of_other[0], of_other[1]]);
             match k {
                 0 => self.first = [rates, slopes],
                 _ => [self.right[k][1], self.right[k][2]] = [rates, slopes],
@@ -263,16 +216,17 @@ impl<const LINEARISED: bool> AgeingRecurrences<LINEARISED> {
     #[inline(always)]
     fn expand(
         &mut self,
-        formula: &AgeingInterfaces,
+        formula: &Interfaces,
         memory: &[Cell<Pair>],
         order: usize,
         unit: Pair,
     ) -> bool {
-        let AgeingInterfaces {
-            law: form,
+        let Interfaces {
+            law,
             driving,
             stiffness,
         } = formula;
+        let form = &law.ageing;
         let (tau, psi) = (memory[TAU * ROOM].get(), memory[PSI * ROOM].get());
         let a = psi.mul_add(psi.like(form.strength[1]), psi.like(form.strength[0]));
         let per_psi = (psi.like(form.strength[1]) / a).twice();

@@ -6,9 +6,9 @@ use crate::series::{Accuracy, Expansion};
 #[cfg(target_arch = "x86_64")]
 use {
     super::ageing_lanes::AgeingLanes,
-    super::lanes::{Lanes, Wide},
-    crate::friction::{AgeingForm, LawForm},
-    crate::series::{ByFormula, Eight, Four},
+    super::in_states::InStates,
+    super::lanes::Lanes,
+    crate::series::{Eight, Four, LaneFormula},
 };
 
 /// The most lanes that there are.
@@ -34,33 +34,30 @@ pub trait BatchSolution: Send {
     fn expansion(&self, lane: usize, order: usize, into: &mut Expansion<3>);
 }
 
-/// As many lanes as this processor has, in which runs with this law go; `None` where it has none.
+/// The lanes in which runs with this law go, by the recurrences that it has of its own or by its recorded formula; `None` where the processor
+/// has none.
 #[doc(hidden)]
 pub fn batch_solution(law: AnyLaw) -> Option<Box<dyn BatchSolution>> {
     #[cfg(target_arch = "x86_64")]
     {
-        if let Some(simd) = crate::series::avx512() {
-            let zero = Eight::new(simd, [0.0; 8]);
-            return Some(lanes(simd, law.form(), zero));
+        let (law, simd) = (law.form(), crate::series::avx2()?);
+        let four = Four::new(simd, [0.0; 4]);
+        if law.undamped_ageing().is_none() {
+            // Of eight lanes there are no kernels.
+            let recorded = LaneFormula::new(&InStates(law), false, four);
+            return Some(Box::new(Lanes::new(simd, law, four, recorded)));
         }
-        if let Some(simd) = crate::series::avx2() {
-            let zero = Four::new(simd, [0.0; 4]);
-            return Some(lanes(simd, law.form(), zero));
-        }
+        Some(match crate::series::avx512() {
+            Some(wide) => {
+                let eight = Eight::new(wide, [0.0; 8]);
+                Box::new(Lanes::new(wide, law, eight, AgeingLanes::new(eight)))
+            }
+            None => Box::new(Lanes::new(simd, law, four, AgeingLanes::new(four))),
+        })
     }
-    let _ = law;
-    None
-}
-
-/// By the recurrences that the law has of its own, or by its formula.
-#[cfg(target_arch = "x86_64")]
-fn lanes<S, E: Wide>(simd: S, form: LawForm, zero: E) -> Box<dyn BatchSolution>
-where
-    Lanes<S, E, AgeingForm, AgeingLanes<E>>: BatchSolution + 'static,
-    Lanes<S, E, LawForm, ByFormula>: BatchSolution + 'static,
-{
-    match form.undamped_ageing() {
-        Some(form) => Box::new(Lanes::new(simd, form, zero, AgeingLanes::new(zero))),
-        None => Box::new(Lanes::new(simd, form, zero, ByFormula)),
+    #[cfg(not(target_arch = "x86_64"))]
+    {
+        let _ = law;
+        None
     }
 }

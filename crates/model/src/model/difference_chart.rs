@@ -10,10 +10,13 @@
 use super::{Driven, Loading, Parameter, Smooth, stress_rate};
 use crate::field::State;
 use crate::friction::{AnyLaw, Law, LawForm};
-use crate::number::{Difference, Real};
+use crate::number::{Difference, DoubleDouble, Real};
 #[cfg(target_arch = "x86_64")]
 use crate::series::Tangent;
-use crate::series::{Equations, Plain, Solution};
+use crate::series::{
+    Accuracy, Equations, Expansion, Formula, KeptFormula, ROOM, Recurrences, Solution, Stepper,
+};
+use std::cell::Cell;
 
 /// dtau/dt = K (V_H - v_1 - v_2), dw_2/dt = g(v_2, w_2), d(ln D)/dt = (dpsi_1/dt - dpsi_2/dt) / D, in the parameters
 /// (V_H, K), from (19).
@@ -68,11 +71,18 @@ impl Equations<3, 2> for DifferenceChart {
         ]
     }
 
-    // Exponentials of the stress and the states hide in no series: the next step sees all that they have grown by in one. Rows
-    // for other laws, and for damping, there are none.
+    // Exponentials of the stress and the states hide in no series: the next step sees all that they have grown by in one. With other
+    // laws, and with damping, the end of every step is checked.
     fn own_solution(&self, parameters: [f64; 2]) -> Option<Box<dyn Solution<3>>> {
         self.form.undamped_ageing()?;
-        Some(Box::new(Plain::new(*self, parameters)))
+        let formula = At {
+            chart: *self,
+            parameters,
+        };
+        Some(Box::new(ChartSolution {
+            stepper: Stepper::new(formula, 0.0),
+            recurrences: KeptFormula::new(*self, false),
+        }))
     }
 
     #[cfg(target_arch = "x86_64")]
@@ -87,6 +97,74 @@ impl Equations<3, 2> for DifferenceChart {
 
     fn lasting(&self) -> Option<&'static str> {
         self.lasting
+    }
+}
+
+/// The chart at a loading.
+#[derive(Clone, Copy)]
+struct At {
+    chart: DifferenceChart,
+    parameters: [f64; 2],
+}
+
+impl Formula<f64, 3> for At {
+    fn rates(&self, x: &[f64; 3]) -> [f64; 3] {
+        self.chart.rates(*x, self.parameters)
+    }
+
+    /// atol + rtol |x_i|
+    fn units(&self, x: &[f64; 3], (rtol, atol): (f64, f64)) -> [f64; 3] {
+        x.map(|x| x.abs() * rtol + atol)
+    }
+
+    /// 1, and no number where one of x is not finite.
+    fn allows(&self, x: &[f64; 3]) -> f64 {
+        x.iter().fold(1.0, |one, x| x * 0.0 + one)
+    }
+}
+
+impl Recurrences<f64, At, 3> for KeptFormula {
+    fn make(&mut self, formula: &At, memory: &[Cell<f64>], order: usize, unit: f64) {
+        let [driving, stiffness] = formula.parameters;
+        let [tau, second, gap] = [0, 1, 2].map(|i| memory[i * ROOM].get());
+        self.expand(&[tau, second, gap, driving, stiffness], order, unit);
+        for i in 0..3 {
+            for (x, made) in memory[i * ROOM..].iter().zip(&self.variable(i)[..=order]) {
+                x.set(*made);
+            }
+        }
+    }
+}
+
+/// A solution whose steps need no check at their ends.
+struct ChartSolution {
+    stepper: Stepper<f64, At, 3>,
+    recurrences: KeptFormula,
+}
+
+impl Solution<3> for ChartSolution {
+    fn start(&mut self, y: &[f64; 3]) {
+        self.stepper.start(*y);
+    }
+
+    fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble {
+        let step = self
+            .stepper
+            .advance_with(&mut self.recurrences, accuracy, limit.hi());
+        DoubleDouble::from(step)
+    }
+
+    fn state(&self) -> [f64; 3] {
+        *self.stepper.state()
+    }
+
+    fn expansion(&self, order: usize, into: &mut Expansion<3>) {
+        into.order = order;
+        into.unit = self.stepper.unit();
+        into.chart = |x| x;
+        for (i, variable) in into.variables.iter_mut().enumerate() {
+            variable[..=order].copy_from_slice(&self.stepper.series(i)[..=order]);
+        }
     }
 }
 

@@ -1,5 +1,5 @@
 //! The difference chart with its tangents, for laws that are powers of a linear strength and whose state ages, by recurrences of their
-//! own: an optimisation. The formula on jets of series serves for everything else, and tests hold this to it.
+//! own: an optimisation. The recorded formula serves for everything else, and tests hold this to it.
 //!
 //! The interfaces themselves are the pair of [`super::ageing_series`], whose first state is put at psi_1 = psi_2 + D with every step.
 //! With rho = a_1 D / a(psi_2), c = a_1 psi_2 / a(psi_2) and
@@ -26,7 +26,7 @@
 
 use super::Loading;
 use super::ageing_series::{AgeingRecurrences, Best};
-use super::series::{Interfaces, stepper};
+use super::series::{Interfaces, order};
 use super::tangent::{Expand, Linearised, larger, mean_traces};
 use crate::friction::AgeingForm;
 use crate::number::DoubleDouble;
@@ -70,7 +70,7 @@ struct DifferenceTangent<X> {
     loading: Loading,
     /// The places of the parameters in which derivatives are asked for.
     free: Vec<usize>,
-    pair: Stepper<Pair, Interfaces<Pair, AgeingForm>, 2>,
+    pair: Stepper<Pair, Interfaces, 2>,
     recurrences: Box<AgeingRecurrences<true>>,
     difference: Box<DifferenceSeries>,
     /// Columns in (tau, ln D, psi_2/psi_2(0)): the derivatives in the start, then those in parameters.
@@ -267,7 +267,7 @@ impl<X: Element> DifferenceTangent<X> {
             form,
             loading,
             free: free.to_vec(),
-            pair: stepper(form, &loading, Pair::new(simd, [0.0; 2])),
+            pair: Interfaces::stepper(form.into(), &loading, simd),
             recurrences: Box::new(AgeingRecurrences::new(simd)),
             difference: Box::new(DifferenceSeries::new(simd)),
             columns,
@@ -282,7 +282,7 @@ impl<X: Element> DifferenceTangent<X> {
     fn step(&mut self, accuracy: &Accuracy, limit: f64) -> f64 {
         let order = accuracy.order;
         let unit = self.pair.unit().first();
-        let psi = self.pair.state()[PSI].interfaces();
+        let psi = self.pair.state()[PSI].lanes();
         let start = Start {
             psi,
             gap: self.log_gap.0.exp(),
@@ -357,7 +357,7 @@ impl<X: Element> NullaryFnOnce for DifferenceStep<'_, X> {
 
 impl<X: Element> Solution<3> for DifferenceTangent<X> {
     fn order(&self, rtol: f64) -> usize {
-        AgeingRecurrences::<true>::order(rtol)
+        order(rtol)
     }
 
     fn start(&mut self, &[tau, log_second, log_gap]: &[f64; 3]) {

@@ -1,55 +1,10 @@
 //! The vector registers of an x86-64 processor with a trajectory of two interfaces in every lane.
 
+use super::Loading;
 use super::batch::{BatchSolution, MAX_LANES};
-use super::series::Motion;
-use super::series::logarithms;
-use super::{Loading, stress_rate};
-use crate::series::{
-    Accuracy, Eight, Element, Expansion, Formula, Four, Order, Rates, Recurrences, Series, Stepper,
-    WATCHED, value,
-};
-
-/// Both interfaces of a trajectory in every lane of E, variables (tau, psi_1, psi_2).
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Trajectories<E, L> {
-    pub law: L,
-    pub driving: E,
-    pub stiffness: E,
-}
-
-impl<E: Element, L: Motion> Formula<E, 3> for Trajectories<E, L> {
-    // |v| has a kink where v = 0, which is where tau = 0.
-    const KINK: Option<usize> = Some(0);
-
-    #[inline(always)]
-    fn rates<'t, O: Order>(&self, [tau, p, q]: [Series<'t, E, O>; 3]) -> Rates<'t, E, O, 3> {
-        let activation = self.law.activation(tau);
-        let (first, of_first) = self.law.motion(activation, p);
-        let (second, of_second) = self.law.motion(activation, q);
-        let loading = (value(self.driving), value(self.stiffness));
-        let mut watched = [first; WATCHED];
-        watched[1] = second;
-        Rates {
-            variables: [stress_rate(loading, first + second), of_first, of_second],
-            watched,
-        }
-    }
-
-    #[inline(always)]
-    fn units(&self, [tau, p, q]: &[E; 3], (rtol, atol): (f64, f64)) -> [E; 3] {
-        let of_tau = tau.abs().mul_add(tau.like(rtol), tau.like(atol));
-        let of_psi = tau.like(atol + rtol);
-        [of_tau, *p * of_psi, *q * of_psi]
-    }
-
-    #[inline(always)]
-    fn allows(&self, [tau, p, q]: &[E; 3]) -> E {
-        // psi_1 where psi_2 allows it, and no number where tau is not finite.
-        let zero = tau.like(0.0);
-        tau.mul_add(zero, *q)
-            .if_positive(tau.mul_add(zero, *p), tau.like(-1.0))
-    }
-}
+use super::in_states::{Trajectories, logarithms};
+use crate::friction::LawForm;
+use crate::series::{Accuracy, Eight, Element, Expansion, Four, Recurrences, Stepper};
 
 /// An element whose lanes are trajectories.
 pub(super) trait Wide: Element {
@@ -81,10 +36,10 @@ wide!(Four 4);
 wide!(Eight 8);
 
 /// R makes the coefficients.
-pub(super) struct Lanes<S, E, L, R> {
+pub(super) struct Lanes<S, E, R> {
     simd: S,
     recurrences: R,
-    stepper: Stepper<E, Trajectories<E, L>, 3>,
+    stepper: Stepper<E, Trajectories<E>, 3>,
     /// What begins with the next step: the lanes are negative here.
     new: [f64; MAX_LANES],
     starts: [[f64; MAX_LANES]; 3],
@@ -93,8 +48,8 @@ pub(super) struct Lanes<S, E, L, R> {
     reaches: [f64; MAX_LANES],
 }
 
-impl<S, E: Wide, L: Motion, R> Lanes<S, E, L, R> {
-    pub fn new(simd: S, law: L, zero: E, recurrences: R) -> Self {
+impl<S, E: Wide, R> Lanes<S, E, R> {
+    pub fn new(simd: S, law: LawForm, zero: E, recurrences: R) -> Self {
         let formula = Trajectories {
             law,
             driving: zero,
@@ -125,17 +80,16 @@ impl<S, E: Wide, L: Motion, R> Lanes<S, E, L, R> {
 }
 
 /// A step, to be compiled for the processor's vector instructions.
-struct Advance<'a, S, E, L, R> {
-    lanes: &'a mut Lanes<S, E, L, R>,
+struct Advance<'a, S, E, R> {
+    lanes: &'a mut Lanes<S, E, R>,
     accuracy: &'a Accuracy,
     limits: &'a [f64; MAX_LANES],
 }
 
-impl<S, E, L, R> pulp::NullaryFnOnce for Advance<'_, S, E, L, R>
+impl<S, E, R> pulp::NullaryFnOnce for Advance<'_, S, E, R>
 where
     E: Wide,
-    L: Motion,
-    R: Recurrences<E, Trajectories<E, L>, 3>,
+    R: Recurrences<E, Trajectories<E>, 3>,
 {
     type Output = [f64; MAX_LANES];
     #[inline(always)]
@@ -162,10 +116,9 @@ where
 
 macro_rules! convoys {
     ($($token:ident $element:ident)*) => { $(
-        impl<L, R> BatchSolution for Lanes<pulp::x86::$token, $element, L, R>
+        impl<R> BatchSolution for Lanes<pulp::x86::$token, $element, R>
         where
-            L: Motion + Send,
-            R: Recurrences<$element, Trajectories<$element, L>, 3> + Send,
+            R: Recurrences<$element, Trajectories<$element>, 3> + Send,
         {
             fn lanes(&self) -> usize {
                 $element::LANES
@@ -213,8 +166,8 @@ macro_rules! convoys {
                     }
                 }
                 for (i, rate) in into.slip_rates.iter_mut().enumerate() {
-                    let series = self.stepper.watched_series(i).unwrap_or_default();
-                    for (x, all) in rate.iter_mut().zip(series).take(order) {
+                    let series = &self.stepper.slip_rates(i)[..order];
+                    for (x, all) in rate.iter_mut().zip(series) {
                         *x = all.lanes()[lane];
                     }
                 }

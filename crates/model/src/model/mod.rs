@@ -13,6 +13,7 @@ pub mod classics;
 mod difference_chart;
 #[cfg(target_arch = "x86_64")]
 mod difference_tangent;
+mod in_states;
 #[cfg(target_arch = "x86_64")]
 mod lanes;
 mod logarithmic;
@@ -20,12 +21,14 @@ pub mod normal_form;
 mod ramp;
 mod response;
 pub mod scales;
+#[cfg(target_arch = "x86_64")]
 mod series;
 mod single_interface;
 mod slab;
 mod slider;
 mod smooth;
 mod symmetric;
+#[cfg(target_arch = "x86_64")]
 mod tangent;
 mod text_system;
 mod two_interfaces;

@@ -1,8 +1,6 @@
 //! What all systems of interfaces have from their equations: derivatives in every parameter, and power series.
 
 use super::logarithmic::{ALL, LOADING, Logarithmic};
-use super::series::SeriesSolution;
-use super::tangent::tangent;
 use super::{Loading, Parameter, Smooth};
 use crate::field::{Analytic, Jacobian, Parametrised, State};
 use crate::friction::AnyLaw;
@@ -121,20 +119,28 @@ impl<S: Slab<N>, const N: usize> Parametrised<N> for S {
 
 impl<S: Slab<N>, const N: usize> Analytic<N> for S {
     fn solution(&self) -> Box<dyn Solution<N> + '_> {
-        Box::new(SeriesSolution::new(self.law().form(), &pair(self)))
+        #[cfg(target_arch = "x86_64")]
+        if let Some(own) = super::series::solution(self.law().form(), &pair(self)) {
+            return own;
+        }
+        super::in_states::solution(self.law().form(), &pair(self))
     }
 
     fn reference(&self) -> Box<dyn Solution<N> + '_> {
         in_loading(self).reference()
     }
 
-    /// Compiled in V_H and K; with constants of the law in loops.
     fn tangent(&self, free: &[usize]) -> Box<dyn Tangent<N> + '_> {
         if !free.iter().copied().all(is_loading) {
             return in_all(self).tangent(&all_among(self, free));
         }
-        let compiled = tangent(self.law().form(), pair(self), self.weights(), free);
-        compiled.unwrap_or_else(|| in_loading(self).tangent(free))
+        #[cfg(target_arch = "x86_64")]
+        if let Some(own) =
+            super::tangent::tangent(self.law().form(), pair(self), self.weights(), free)
+        {
+            return own;
+        }
+        in_loading(self).tangent(free)
     }
 
     fn reference_tangent(&self, free: &[usize]) -> Box<dyn Tangent<N> + '_> {

@@ -8,7 +8,7 @@ use twinslip_kernel::{Kernel, Width};
 
 /// A coefficient of a series.
 ///
-/// The lanes of a pair are the two interfaces under one stress, whose sum the stress balance needs; the lanes of a batch are
+/// The lanes of a pair are the two interfaces under one stress; the lanes of a batch are
 /// trajectories that have nothing to do with each other.
 pub trait Element:
     Copy
@@ -138,11 +138,6 @@ pub trait Element:
     const SHARES: bool = false;
     /// How many lanes there are.
     const LANES: usize;
-    /// Whether series of these are worth the time that it takes to compile them order by order.
-    const UNROLLED: bool = false;
-    /// Whether a formula and the sums of products are functions of their own, called: of long elements they take minutes to
-    /// compile otherwise, and run no faster.
-    const CALLED: bool = false;
     /// The vectors that kernels make of it, where there are kernels of it.
     const WIDTH: Option<Width> = None;
     /// Carries out a kernel of such vectors on these results, given these numbers and coefficients.
@@ -161,14 +156,6 @@ pub trait Element:
     fn with_lane(self, i: usize, x: f64) -> Self;
     /// The largest number in any lane; not those that are no numbers.
     fn largest_lane(self) -> f64;
-    /// The numbers of both interfaces, where they are lanes; else the first lane twice.
-    fn interfaces(self) -> [f64; 2] {
-        [self.first(); 2]
-    }
-    /// The sum over the interfaces that are lanes of this element.
-    fn over_interfaces(self) -> Self {
-        self
-    }
     /// The largest over the interfaces that are lanes of this element.
     fn largest_over_interfaces(self) -> Self {
         self
@@ -227,7 +214,6 @@ pub(super) fn rough_exp2(x: f64) -> f64 {
 impl Element for f64 {
     type Two = ();
     const LANES: usize = 1;
-    const UNROLLED: bool = true;
     const WIDTH: Option<Width> = Some(Width::One);
     #[inline(always)]
     fn run_kernel(kernel: &Kernel, results: &mut [f64], numbers: &[f64], coefficients: &[f64]) {

@@ -1,11 +1,7 @@
 //! Any small system of differential equations, and its solution in series.
 
-use super::formula::{Formula, Rates, WATCHED};
-use super::handle::{Series, value};
-use super::stepper::Stepper;
-use super::tape::Order;
-use super::{Accuracy, Expansion, Solution, Tangent};
-use crate::number::{DoubleDouble, Real};
+use super::{Solution, Tangent};
+use crate::number::Real;
 use std::fmt::Debug;
 
 /// dx/dt = f(x; p) in N variables with P named parameters: the right-hand side, written once for every number.
@@ -38,75 +34,5 @@ pub trait Equations<const N: usize, const P: usize>: Copy + Debug + Send + Sync 
     /// The name of a law by which every solution, forwards in time, is known to exist for all time.
     fn lasting(&self) -> Option<&'static str> {
         None
-    }
-}
-
-/// The equations as a formula.
-#[derive(Debug, Clone, Copy)]
-struct Fixed<S, const P: usize> {
-    equations: S,
-    parameters: [f64; P],
-}
-
-impl<S: Equations<N, P>, const N: usize, const P: usize> Formula<f64, N> for Fixed<S, P> {
-    #[inline(always)]
-    fn rates<'t, O: Order>(&self, x: [Series<'t, f64, O>; N]) -> Rates<'t, f64, O, N> {
-        Rates {
-            variables: self.equations.rates(x, self.parameters.map(value)),
-            watched: [Series::constant(0.0); WATCHED],
-        }
-    }
-
-    /// atol + rtol |x_i|
-    #[inline(always)]
-    fn units(&self, x: &[f64; N], (rtol, atol): (f64, f64)) -> [f64; N] {
-        x.map(|x| x.abs() * rtol + atol)
-    }
-
-    /// 1, and no number where one of x is not finite.
-    #[inline(always)]
-    fn allows(&self, x: &[f64; N]) -> f64 {
-        x.iter().fold(1.0, |one, x| x * 0.0 + one)
-    }
-}
-
-/// A solution of the equations on its way. A step may err by `atol + rtol |x_i|` in x_i, in each of them.
-pub struct Plain<S, const N: usize, const P: usize> {
-    stepper: Stepper<f64, Fixed<S, P>, N>,
-}
-
-impl<S: Equations<N, P>, const N: usize, const P: usize> Plain<S, N, P> {
-    /// To be started.
-    pub fn new(equations: S, parameters: [f64; P]) -> Self {
-        let formula = Fixed {
-            equations,
-            parameters,
-        };
-        Plain {
-            stepper: Stepper::new(formula, 0.0),
-        }
-    }
-}
-
-impl<S: Equations<N, P>, const N: usize, const P: usize> Solution<N> for Plain<S, N, P> {
-    fn start(&mut self, y: &[f64; N]) {
-        self.stepper.start(*y);
-    }
-
-    fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble {
-        DoubleDouble::from(self.stepper.advance(accuracy, limit.hi()))
-    }
-
-    fn state(&self) -> [f64; N] {
-        *self.stepper.state()
-    }
-
-    fn expansion(&self, order: usize, into: &mut Expansion<N>) {
-        into.order = order;
-        into.unit = self.stepper.unit();
-        into.chart = |x| x;
-        for (i, variable) in into.variables.iter_mut().enumerate() {
-            variable[..=order].copy_from_slice(&self.stepper.series(i)[..=order]);
-        }
     }
 }

@@ -1,7 +1,6 @@
 //! Solutions of a recorded formula: any system in any number of variables, in numbers of any kind.
 //!
-//! Steps as [`super::Stepper`] makes them, for one trajectory; the series come from a [`Program`]. How far a series is followed, its end
-//! decides: [`advance`].
+//! The series come from a [`Program`]. How far a series is followed, its end decides: [`advance`].
 
 mod advance;
 mod held_powers;
@@ -13,11 +12,20 @@ use super::compiled::Compiled;
 use super::element::{Element, rough_exp2, rough_log2};
 use super::program::{Program, Source};
 use super::program_rows::ProgramRows;
-use super::stepper::{LEAST, SAFETY, SHORTER, SHORTER_UNITS};
 use super::{Accuracy, usual_order};
 use crate::number::DoubleDouble;
 use crate::number::polynomial::Root;
 use pulp::NullaryFnOnce;
+
+/// Part of the estimated step that is taken.
+pub(super) const SAFETY: f64 = 0.95;
+/// By which the unit of time is shortened while the coefficients overflow, and how often.
+pub(super) const SHORTER: f64 = 1.0 / (1u64 << 40) as f64;
+pub(super) const SHORTER_UNITS: usize = 24;
+/// Size that a state of zeros is given, whose rates it shall divide without overflow.
+pub(super) const LEAST: f64 = 1e-150;
+/// Bisections of a step: enough for the last bit.
+pub(super) const BISECTIONS: usize = 64;
 
 /// Records the formula at a state.
 pub(super) type RecordFormula<'a> = Box<dyn Fn(&[f64]) -> Program + 'a>;
@@ -236,23 +244,24 @@ impl<'a, T: Element> Interpreted<'a, T> {
         self.record_here();
         let powers = !self.program.bases.is_empty();
         for _ in 0..=SHORTER_UNITS {
+            let unit = self.any.like(self.unit);
             let (mut k, mut anew) = (0, powers);
             let mut may_compile = true;
             while k < order {
                 if k == 0 {
                     self.rows.prepare();
-                    self.rows.integrate(self.unit);
+                    self.rows.integrate(unit);
                 } else {
                     if !anew && may_compile {
                         // Once in a step: each time it asks counts as one.
                         may_compile = false;
                         if let Some(compiled) = &mut self.compiled
-                            && compiled.expand(&mut self.rows, order, self.unit)
+                            && compiled.expand(&mut self.rows, order, unit)
                         {
                             break;
                         }
                     }
-                    self.rows.level(k, self.unit);
+                    self.rows.level(k, unit);
                 }
                 k += 1;
                 if k == 2 && anew {

@@ -213,8 +213,6 @@ macro_rules! lanes {
 
         impl Element for $name {
             const LANES: usize = $n;
-            // Processors with room for eight lanes do not take four.
-            const UNROLLED: bool = $n != 4;
             #[inline(always)]
             fn run<F: NullaryFnOnce>(self, f: F) -> F::Output {
                 self.simd.vectorize(f)
@@ -319,15 +317,6 @@ macro_rules! lanes {
         lanes!(@kernels Two);
         type Two = Four;
         const SHARES: bool = true;
-        #[inline(always)]
-        fn interfaces(self) -> [f64; 2] {
-            self.lanes()
-        }
-        #[inline(always)]
-        fn over_interfaces(self) -> Self {
-            let [x, y] = self.lanes();
-            self + Self::new(self.simd, [y, x])
-        }
         #[inline(always)]
         fn largest_over_interfaces(self) -> Self {
             let [x, y] = self.lanes();

@@ -296,7 +296,8 @@ impl<T: Element> Level<'_, T> {
         slope
     }
 
-    /// y + g(y) = x, as the recurrence of [`super::tape`]'s rows has it.
+    /// y and g = g(y) with y + g = x. As e = exp y has k e_k = k y_k e_0 + sum of j y_j e_(k-j) over 0 < j < k, and the other functions
+    /// likewise, g_k = g'(y_0) y_k + r, and so y_k = (x_k - r) / (1 + g'(y_0)) and g_k = (g'(y_0) x_k + r) / (1 + g'(y_0)).
     fn balanced(&mut self, x: Source, g: Balance<Source>, one: &mut PlacedInstruction<T>) {
         let y = one.result;
         let [e, f, steepness, of_a, of_b, of_y] = self.of_balance(y);

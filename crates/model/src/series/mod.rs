@@ -1,9 +1,12 @@
 //! Solutions as power series in time: what a Taylor method steps with.
 //!
-//! A differential equation is a `Formula`, written for any [`crate::number::Real`]. Evaluated once per order on
-//! `Series` it yields one coefficient after the other of its solution (`tape` says how); `Stepper` makes steps of them.
-//! The laws' own formulas, the same that give values and exact derivatives, run on series. Recurrences that are written by hand for
-//! one kind of law take two thirds of the time: those of most laws stand in `model::ageing_series`, for what is run most.
+//! A differential equation is a formula, written for any [`crate::number::Real`]: the laws' own, the same that give values and exact
+//! derivatives. Evaluated once, on numbers that write down what is done with them (`trace`), it becomes a list of operations
+//! (`program`), each with a recurrence that makes the next coefficient of its result from those of its operands. These recurrences run in
+//! loops (`interpreted`), and compiled to machine code once a formula has made enough steps (`compiled`).
+//!
+//! Recurrences that are written by hand for one kind of law take less time: those of most laws stand in `model::ageing_series`, for
+//! what is run most. `Stepper` makes steps of them; where they do not hold, the recorded formula makes its coefficients (`lane_formula`).
 //!
 //! The coefficients are `Element`s: ordinary numbers, both interfaces in one vector register, or several trajectories at
 //! once. What the processor can do is asked when the program runs, so that a binary for any x86-64 uses AVX2 and AVX-512.
@@ -13,6 +16,7 @@
 
 mod assembly;
 mod column_series;
+#[cfg(target_arch = "x86_64")]
 mod columns;
 mod compiled;
 mod compiling;
@@ -24,28 +28,23 @@ mod event;
 #[cfg(target_arch = "x86_64")]
 mod exact_products;
 mod first_order;
-mod formula;
 #[cfg(target_arch = "x86_64")]
 mod functions;
-mod handle;
 mod interpreted;
+mod lane_formula;
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod lanes;
 mod later;
 mod later_orders;
 mod linearised;
 mod placed;
-mod plain;
 mod products;
 mod program;
 mod program_rows;
-mod real;
 mod recent;
 mod recorded;
-mod recurrences;
 mod rounding;
 mod stepper;
-mod tape;
 mod trace;
 mod transport;
 #[cfg(target_arch = "x86_64")]
@@ -54,6 +53,7 @@ mod vectors;
 
 use crate::number::DoubleDouble;
 use crate::number::polynomial::evaluate;
+#[cfg(target_arch = "x86_64")]
 pub(crate) use columns::{Along, JacobianTerm, VariationalEquations};
 #[doc(hidden)]
 pub use compiled::BothWays;
@@ -61,19 +61,16 @@ pub use compiling::{Compiling, VARIABLE as COMPILE, allowed as allowed_compiling
 pub use cubic::Jet3;
 pub(crate) use element::Element;
 pub use equations::Equations;
-pub(crate) use equations::Plain;
 pub use event::{Passage, Section, Zeros};
-pub(crate) use formula::{Formula, Rates, WATCHED};
-pub(crate) use handle::{Series, value};
+pub(crate) use lane_formula::{KeptFormula, LaneFormula};
 #[cfg(target_arch = "x86_64")]
 pub(crate) use lanes::{Eight, Four, Pair};
+#[cfg(target_arch = "x86_64")]
 pub(crate) use linearised::longest_of_terms;
-pub(crate) use plain::Both;
 pub(crate) use recorded::{ByRecording, Recorded, RecordedExpressions};
 #[doc(hidden)]
 pub use recorded::{both_ways, columns_both_ways};
-pub(crate) use stepper::{ByFormula, Recurrences, Stepper};
-pub(crate) use tape::{Order, ROOM};
+pub(crate) use stepper::{Formula, Recurrences, Stepper};
 pub use transport::TaylorMap;
 pub use vectors::{VARIABLE as VECTORS, Vectors, allowed as allowed_vectors, used as used_vectors};
 #[cfg(target_arch = "x86_64")]
@@ -82,9 +79,8 @@ pub(crate) use vectors::{avx2, avx512};
 /// The highest order of series in doubles.
 pub const MAX_ORDER: usize = 24;
 
-/// The highest order of series that are compiled order by order for every formula: with higher ones their code outgrows the cache of
-/// many processors.
-pub const UNROLLED_ORDER: usize = 18;
+/// Coefficients that a row has room for.
+pub(crate) const ROOM: usize = MAX_ORDER + 1;
 
 /// 1/k
 pub(crate) const ONE_OVER: [f64; MAX_ORDER + 2] = {
@@ -103,14 +99,14 @@ pub const REFERENCE_ORDER: usize = 32;
 /// The order of a step, and what it may err by.
 #[derive(Debug, Clone, Copy)]
 pub struct Accuracy {
-    /// An even one from 12 to [`UNROLLED_ORDER`], or to [`MAX_ORDER`] where [`Solution::order`] says so; [`REFERENCE_ORDER`] in
+    /// An even one from 12 to [`MAX_ORDER`]; [`REFERENCE_ORDER`] in
     /// double-double arithmetic.
     pub order: usize,
     /// Relative and absolute tolerance.
     pub tolerances: (f64, f64),
 }
 
-/// The order with which series that are made order by order take the least time for a relative tolerance.
+/// The order with which series in loops take the least time for a relative tolerance.
 pub fn usual_order(rtol: f64) -> usize {
     /// Tolerances above which lower orders win.
     const LOW: f64 = 1e-7;
@@ -120,7 +116,7 @@ pub fn usual_order(rtol: f64) -> usize {
     } else if rtol > MIDDLE {
         16
     } else {
-        UNROLLED_ORDER
+        18
     }
 }
 

@@ -1,4 +1,5 @@
-//! The rows of a [`Program`], and how its operations fill them: the recurrences of [`super::tape`], in loops.
+//! The rows of a [`Program`], and how its operations fill them: by recurrences (Knuth, The Art of
+//! Computer Programming 2, section 4.7; Jorba & Zou 2005, proposition 2), in loops.
 
 use super::element::Element;
 use super::placed::{PlacedLater, PlacedSum, PlacedTerm, placed};
@@ -124,7 +125,7 @@ impl<T: Element> ProgramRows<T> {
             phase: k % ORDERS,
             begins: k < ORDERS,
             one_over: self.inverses[k],
-            share: DoubleDouble::ZERO,
+            share: self.any,
             order: DoubleDouble::from(k as f64),
             any: self.any,
         };
@@ -168,10 +169,10 @@ impl<T: Element> ProgramRows<T> {
         self.inverses[k]
     }
 
-    /// What the k-th coefficient of a rate counts in the next one of its variable; the unit of time is a power of two.
+    /// What the k-th coefficient of a rate counts in the next one of its variable, in that unit of time.
     #[inline(always)]
-    pub fn share(&self, k: usize, unit: f64) -> DoubleDouble {
-        self.inverses[k + 1].times_power_of_two(unit)
+    pub fn share(&self, k: usize, unit: T) -> T {
+        unit.like_exact(self.inverses[k + 1]) * unit
     }
 
     /// The first coefficients at this state.
@@ -256,10 +257,10 @@ impl<T: Element> ProgramRows<T> {
 
     /// The coefficients of the variables after the first, from the first ones of their rates.
     #[inline(always)]
-    pub fn integrate(&mut self, unit: f64) {
+    pub fn integrate(&mut self, unit: T) {
         let share = self.share(0, unit);
         for rate in &self.rates {
-            let next = self.coefficient(rate.of, 0).scale(share);
+            let next = self.coefficient(rate.of, 0) * share;
             self.coefficients[rate.variable * self.room + 1] = next;
         }
     }
@@ -267,7 +268,7 @@ impl<T: Element> ProgramRows<T> {
     /// The k-th coefficients of all rows but those of the variables, from those up to the k-th of these, whose next ones they make; k > 0,
     /// and orders follow each other.
     #[inline(always)]
-    pub fn level(&mut self, k: usize, unit: f64) {
+    pub fn level(&mut self, k: usize, unit: T) {
         let share = self.share(k, unit);
         let (level, later) = self.order(k);
         let level = Level { share, ..level };
@@ -293,7 +294,7 @@ impl<T: Element> ProgramRows<T> {
         }
         for rate in &self.rates_apart {
             let next = match rate.of {
-                Source::Row(row) => self.coefficients[row * self.room + k].scale(share),
+                Source::Row(row) => self.coefficients[row * self.room + k] * share,
                 Source::Number(_) => self.any.like(0.0),
             };
             self.coefficients[rate.variable * self.room + k + 1] = next;
@@ -313,7 +314,7 @@ pub(super) struct Level<'a, T> {
     /// 1/k
     pub one_over: DoubleDouble,
     /// What a rate counts in the next coefficient of its variable.
-    share: DoubleDouble,
+    share: T,
     /// k
     pub order: DoubleDouble,
     pub any: T,
@@ -411,7 +412,7 @@ impl<T: Element> Level<'_, T> {
         }
         self.put(sum.result, all);
         if let Some(variable) = sum.rate_of {
-            self.put(variable + 1, all.scale(self.share));
+            self.put(variable + 1, all * self.share);
         }
     }
 }

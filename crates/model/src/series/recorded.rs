@@ -12,7 +12,7 @@ use super::linearised::Linearised;
 use super::recent::{Formulas, Reused};
 use super::trace::{Graph, Traced};
 use super::{
-    Accuracy, Derivatives, Expansion, MAX_ORDER, REFERENCE_ORDER, Solution, Tangent, TaylorMap,
+    Accuracy, Derivatives, Expansion, REFERENCE_ORDER, ROOM, Solution, Tangent, TaylorMap,
 };
 #[cfg(target_arch = "x86_64")]
 use super::{Four, Pair, avx2};
@@ -21,8 +21,6 @@ use crate::number::{DoubleDouble, Real};
 use std::cell::OnceCell;
 use std::ops::{Deref, DerefMut};
 
-/// Coefficients that there is room for.
-const ROOM: usize = MAX_ORDER + 1;
 const REFERENCE_ROOM: usize = REFERENCE_ORDER + 1;
 
 /// Equations at given parameters, whose solutions are made by a recorded formula.

@@ -1,30 +1,40 @@
-//! One step after the other along a solution, each by the Taylor series at its beginning.
+//! One step after the other along interfaces under one stress, each by the Taylor series at its beginning.
 
 use super::element::Element;
-use super::formula::{Formula, Memory, WATCHED, expand, expand_running, first_level};
-use super::tape::ROWS;
-use super::{Accuracy, MAX_ORDER, UNROLLED_ORDER};
+use super::interpreted::{BISECTIONS, LEAST, SAFETY, SHORTER, SHORTER_UNITS};
+use super::{Accuracy, ROOM};
 use std::cell::Cell;
 
-/// Part of the estimated step that is taken.
-pub(super) const SAFETY: f64 = 0.95;
 /// Times that a step is halved because it leads where the formula has no meaning.
 const HALVINGS: usize = 60;
-/// By which the unit of time is shortened while the coefficients overflow, and how often.
-pub(super) const SHORTER: f64 = 1.0 / (1u64 << 40) as f64;
-pub(super) const SHORTER_UNITS: usize = 24;
-/// Size that a state of zeros is given, whose rates it shall divide without overflow.
-pub(super) const LEAST: f64 = 1e-150;
-/// Bisections of a step: enough for the last bit.
-pub(super) const BISECTIONS: usize = 64;
+/// Rows of coefficients: those of the variables first, then those of the slip rates.
+const ROWS: usize = 5;
+
+/// Coefficients of all rows, of which each has the same room.
+type Memory<E> = [[E; ROOM]; ROWS];
+
+/// dx/dt = f(x) in C variables, the first of which is the stress. |v| has a kink where v = 0, which is where the stress is 0.
+pub trait Formula<E: Element, const C: usize>: Copy {
+    /// f(x)
+    fn rates(&self, x: &[E; C]) -> [E; C];
+
+    /// What may err by one in a step, from the state and the tolerances: the unit of every variable.
+    fn units(&self, x: &[E; C], tolerances: (f64, f64)) -> [E; C];
+
+    /// Positive and finite in the lanes whose state is one that the formula is meant for.
+    fn allows(&self, x: &[E; C]) -> E;
+}
+
+/// How the coefficients of a series are made from the first ones.
+pub trait Recurrences<E: Element, F: Formula<E, C>, const C: usize> {
+    /// To an order, in a unit of time, into rows of [`ROOM`] coefficients: those of the variables first, then those of the slip rates.
+    fn make(&mut self, formula: &F, memory: &[Cell<E>], order: usize, unit: E);
+}
 
 /// A solution of a formula on its way, in every lane of E.
-///
-/// A formula that says so is compiled order by order, on rows with room for [`MAX_ORDER`] and one coefficients.
 pub struct Stepper<E, F, const C: usize> {
     formula: F,
     memory: Box<Memory<E>>,
-    watched: [Option<usize>; WATCHED],
     /// The state at the end of the last step, and what rounding took from it.
     x: [E; C],
     lost: [E; C],
@@ -34,47 +44,13 @@ pub struct Stepper<E, F, const C: usize> {
     next_unit: E,
 }
 
-/// How the coefficients of a series are made from the first ones.
-pub trait Recurrences<E: Element, F: Formula<E, C>, const C: usize> {
-    /// To an order, in a unit of time, into rows of [`super::ROOM`] coefficients, those of the variables first. Returns the rows of what is
-    /// watched.
-    fn make(
-        &mut self,
-        formula: &F,
-        memory: &[Cell<E>],
-        order: usize,
-        unit: E,
-    ) -> [Option<usize>; WATCHED];
-}
-
-/// By the formula itself, on series.
-pub struct ByFormula;
-
-impl<E: Element, F: Formula<E, C>, const C: usize> Recurrences<E, F, C> for ByFormula {
-    #[inline(always)]
-    fn make(
-        &mut self,
-        formula: &F,
-        memory: &[Cell<E>],
-        order: usize,
-        unit: E,
-    ) -> [Option<usize>; WATCHED] {
-        if F::UNROLLED && order <= UNROLLED_ORDER {
-            expand(formula, memory, order, unit)
-        } else {
-            expand_running(formula, memory, order, unit)
-        }
-    }
-}
-
 impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
     /// To be started; `any` is any element.
     pub fn new(formula: F, any: E) -> Self {
         let (zero, one) = (any.like(0.0), any.like(1.0));
         Stepper {
             formula,
-            memory: Box::new([[zero; MAX_ORDER + 1]; ROWS]),
-            watched: [None; WATCHED],
+            memory: Box::new([[zero; ROOM]; ROWS]),
             x: [zero; C],
             lost: [zero; C],
             unit: one,
@@ -96,8 +72,6 @@ impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
             self.x[c] = new.if_negative(x, self.x[c]);
             self.lost[c] = new.if_negative(zero, self.lost[c]);
         }
-        self.load();
-        first_level(&self.formula, cells(&mut self.memory), one);
         // The time in which the state would change by its own size; of a variable that is zero, by the rounding of the largest.
         let mut least = zero.like(LEAST);
         for c in 0..C {
@@ -105,9 +79,9 @@ impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
             least = Element::max(least, rounding.largest_over_interfaces());
         }
         let mut rate = zero;
-        for c in 0..C {
-            let size = Element::max(self.x[c].abs(), least);
-            rate = Element::max(rate, (self.coefficient(c, 1) / size).abs());
+        for (x, of_x) in self.x.iter().zip(self.formula.rates(&self.x)) {
+            let size = Element::max(x.abs(), least);
+            rate = Element::max(rate, (of_x / size).abs());
         }
         let rate = rate.largest_over_interfaces();
         let next_unit = one / Element::max(rate, zero.like(f64::MIN_POSITIVE));
@@ -148,20 +122,14 @@ impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
         &self.memory[i]
     }
 
-    /// The series of the i-th quantity watched, without its last coefficient; `None` for a constant.
+    /// The series of the i-th row of slip rates, without its last coefficient.
     #[inline(always)]
-    pub fn watched_series(&self, i: usize) -> Option<&[E]> {
-        self.watched[i].map(|row| &self.memory[row][..])
+    pub fn slip_rates(&self, i: usize) -> &[E] {
+        &self.memory[C + i]
     }
 
     /// Goes on by the step that the accuracy asks for, at most `limit`, in every lane, and returns it. The state is not moved
     /// in a lane where that is not a number: there is no step then.
-    #[inline(always)]
-    pub fn advance(&mut self, accuracy: &Accuracy, limit: E) -> E {
-        self.advance_with(&mut ByFormula, accuracy, limit)
-    }
-
-    /// The same with coefficients that are made so.
     #[inline(always)]
     pub fn advance_with(
         &mut self,
@@ -201,8 +169,8 @@ impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
         let formula = self.formula;
         let mut tried = 0;
         loop {
-            let memory = cells(&mut self.memory);
-            self.watched = recurrences.make(&formula, memory, accuracy.order, self.unit);
+            let memory = Cell::from_mut(self.memory.as_flattened_mut()).as_slice_of_cells();
+            recurrences.make(&formula, memory, accuracy.order, self.unit);
             // Zero where all coefficients are finite. Close to a steady state the state changes by its own size in no time
             // that is near the step; in a shorter unit the coefficients do not overflow.
             let zero = self.unit.like(0.0);
@@ -227,7 +195,7 @@ impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
         let mut h = Element::min(h, in_units.abs()) * limit.sign();
         let (mut x, mut lost) = self.evaluate(accuracy.order, h);
         let allowed = self.formula.allows(&x).all_positive();
-        if !allowed || F::KINK.is_some_and(|c| !(x[c] * self.x[c]).none_negative()) {
+        if !allowed || !(x[0] * self.x[0]).none_negative() {
             h = self.shortened(accuracy.order, h);
             (x, lost) = self.evaluate(accuracy.order, h);
             let finite = h.mul_add(h.like(0.0), h.like(1.0));
@@ -248,8 +216,7 @@ impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
     #[cold]
     fn shortened(&self, order: usize, h: E) -> E {
         let h = self.halved(order, h);
-        let Some(c) = F::KINK else { return h };
-        if (self.sum(order, h).0[c] * self.x[c]).none_negative() {
+        if (self.sum(order, h).0[0] * self.x[0]).none_negative() {
             return h;
         }
         self.halved(order, self.up_to_kink(order, h))
@@ -343,18 +310,16 @@ impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
         largest.largest_over_interfaces().rough_log2()
     }
 
-    /// The step h, cut just behind the zero of the variable in whose zeros the formula has a kink: a series does not reach
-    /// beyond. By bisection, for it happens once in a run.
+    /// The step h, cut just behind the zero of the stress, where the formula has a kink: a series does not reach beyond. By bisection, for it happens once in a run.
     #[cold]
     fn up_to_kink(&self, order: usize, h: E) -> E {
-        let Some(c) = F::KINK else { return h };
-        let start = self.x[c];
+        let start = self.x[0];
         let zero = h.like(0.0);
-        let crosses = self.sum(order, h).0[c] * start;
+        let crosses = self.sum(order, h).0[0] * start;
         let (mut near, mut far) = (crosses.if_negative(zero, h), h);
         for _ in 0..BISECTIONS {
             let middle = (near + far) * h.like(0.5);
-            let sign = self.sum(order, middle).0[c] * start;
+            let sign = self.sum(order, middle).0[0] * start;
             near = sign.if_negative(near, middle);
             far = sign.if_negative(middle, far);
         }
@@ -398,9 +363,4 @@ impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
         }
         (x, lost)
     }
-}
-
-#[inline(always)]
-fn cells<E>(memory: &mut Memory<E>) -> &[Cell<E>] {
-    Cell::from_mut(memory.as_flattened_mut()).as_slice_of_cells()
 }

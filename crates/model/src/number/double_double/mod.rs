@@ -86,16 +86,6 @@ impl DoubleDouble {
         DoubleDouble { hi, lo }
     }
 
-    /// x times this, for a power of two x: exact where nothing overflows or vanishes.
-    #[inline(always)]
-    #[doc(hidden)]
-    pub fn times_power_of_two(self, x: f64) -> Self {
-        DoubleDouble {
-            hi: self.hi * x,
-            lo: self.lo * x,
-        }
-    }
-
     /// The double next to it.
     #[inline(always)]
     pub fn hi(self) -> f64 {

@@ -1,6 +1,6 @@
 //! A formula at a state, run in loops or compiled: for tests that compare the two.
 
-use super::Compiled;
+use super::{Compiled, expand};
 use crate::series::element::Element;
 use crate::series::program::Program;
 use crate::series::program_rows::ProgramRows;
@@ -52,22 +52,15 @@ impl<T: Element> NullaryFnOnce for Expand<'_, T> {
 
     #[inline(always)]
     fn call(self) -> bool {
+        let unit = self.at.any.like(self.unit);
         let AtState {
             rows,
             compiled,
             state,
             ..
         } = self.at;
-        rows.begin(state);
-        rows.prepare();
-        rows.integrate(self.unit);
-        if self.compiled && compiled.expand(rows, self.order, self.unit) {
-            return true;
-        }
-        for k in 1..self.order {
-            rows.level(k, self.unit);
-        }
-        false
+        let compiled = self.compiled.then_some(compiled);
+        expand((rows, compiled), state, (self.order, unit))
     }
 }
 

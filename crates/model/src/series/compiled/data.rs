@@ -91,7 +91,7 @@ pub struct Data<T> {
     layout: Layout,
     numbers: Vec<T>,
     /// The unit of time that the shares are for.
-    unit: f64,
+    unit: T,
 }
 
 impl<T: Element> Data<T> {
@@ -105,7 +105,7 @@ impl<T: Element> Data<T> {
         let mut data = Data {
             layout,
             numbers,
-            unit: f64::NAN,
+            unit: any.like(f64::NAN),
         };
         for (step, later) in rows.later().iter().enumerate() {
             match later {
@@ -147,11 +147,11 @@ impl<T: Element> Data<T> {
     /// Takes over those of a step, whose first coefficients are prepared. Returns whether the kernel holds for it: it multiplies no product
     /// with 1.
     #[inline(always)]
-    pub fn gather(&mut self, rows: &ProgramRows<T>, unit: f64, any: T) -> bool {
-        if unit != self.unit {
+    pub fn gather(&mut self, rows: &ProgramRows<T>, unit: T) -> bool {
+        if !is_same(unit, self.unit) {
             self.unit = unit;
             for k in 1..self.layout.room - 1 {
-                self.numbers[self.layout.share(k)] = any.like_exact(rows.share(k, unit));
+                self.numbers[self.layout.share(k)] = rows.share(k, unit);
             }
         }
         let mut holds = true;

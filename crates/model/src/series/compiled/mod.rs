@@ -36,7 +36,28 @@ pub(super) struct Compiled<T> {
     data: Data<T>,
     ends: Ends<T>,
     when: When,
-    any: T,
+}
+
+/// Makes the series of these rows that begin at these variables, to an order and in that unit of time: compiled where that is given and has
+/// a kernel, else in loops. Returns whether it was compiled.
+#[inline(always)]
+pub(super) fn expand<T: Element>(
+    (rows, compiled): (&mut ProgramRows<T>, Option<&mut Compiled<T>>),
+    begin: &[T],
+    (order, unit): (usize, T),
+) -> bool {
+    rows.begin(begin);
+    rows.prepare();
+    rows.integrate(unit);
+    if let Some(compiled) = compiled
+        && compiled.expand(rows, order, unit)
+    {
+        return true;
+    }
+    for k in 1..order {
+        rows.level(k, unit);
+    }
+    false
 }
 
 impl<T: Element> Compiled<T> {
@@ -60,18 +81,17 @@ impl<T: Element> Compiled<T> {
             data,
             ends,
             when,
-            any,
         })
     }
 
     /// Makes the coefficients of all rows below an order, and of the variables that one too, of rows that are prepared; returns whether it did:
     /// there may be no kernel yet, or none for such first coefficients.
     #[inline(always)]
-    pub fn expand(&mut self, rows: &mut ProgramRows<T>, order: usize, unit: f64) -> bool {
+    pub fn expand(&mut self, rows: &mut ProgramRows<T>, order: usize, unit: T) -> bool {
         let Some(kernel) = self.formula.kernel(order, self.when) else {
             return false;
         };
-        if !self.data.gather(rows, unit, self.any) {
+        if !self.data.gather(rows, unit) {
             return false;
         }
         T::run_kernel(kernel, rows.coefficients_mut(), self.data.numbers(), &[]);

@@ -5,13 +5,12 @@
 //! So the rates where a step ends, which the next step begins with, are compared with the derivative of the series there, and the zeros
 //! of these quantities within the step are found.
 
-use super::{Interpreted, Reached, finite, power_of_two};
+use super::{BISECTIONS, Interpreted, Reached, finite, power_of_two};
 use crate::number::DoubleDouble;
 use crate::number::polynomial::{Crossing, roots};
 use crate::series::element::Element;
 use crate::series::program::Source;
 use crate::series::rounding::rounding;
-use crate::series::stepper::BISECTIONS;
 use crate::series::{Accuracy, REFERENCE_ORDER};
 
 /// How far the rates at the end of a step may be off the derivative of the series: times the length of the step, in units of what the
