@@ -157,7 +157,7 @@ impl TextModel {
     /// # Errors
     /// [`Error::Input`] where there are.
     pub(in crate::scene) fn checked_few(&self) -> Result<()> {
-        const MOST: usize = 8;
+        const MOST: usize = 100;
         let count = self.system.states().len();
         if count <= MOST {
             return Ok(());
