@@ -128,9 +128,21 @@ fn determinant_slope(a: &Matrix) -> Result<impl Fn(&Matrix) -> f64 + use<>> {
     })
 }
 
+/// omega of the two eigenvalues whose sum is nearest to zero; `None` where these are real.
+pub(super) fn pair_frequency(jacobian: &Matrix) -> Option<f64> {
+    /// What is left of the real part, over the imaginary one.
+    const AXIS: f64 = 1e-6;
+    let found = pair_sum(jacobian)?;
+    let half = 0.5 * found.value;
+    let omega = (found.product - half * half).sqrt();
+    (half.abs() < AXIS * omega).then_some(omega)
+}
+
 /// What vanishes, and how it depends on the Jacobian.
 struct Critical {
     value: f64,
+    /// Of two eigenvalues.
+    product: f64,
     /// As of [`Slope::Vectors`].
     pairs: Vec<(Vector, Vector)>,
 }
@@ -156,17 +168,18 @@ fn least_singular(jacobian: &Matrix) -> Option<Critical> {
     for (mut column, by) in even.column_iter_mut().zip(&columns) {
         column *= *by;
     }
-    let lu = even.clone().lu();
-    let mut sign: f64 = lu.p().determinant();
-    for pivot in lu.u().diagonal().iter() {
-        sign *= if *pivot < 0.0 { -1.0 } else { 1.0 };
-    }
     let made = singular_values(even, [true, true])?;
     let least = made.singular_values.imin();
-    let left = made.u?.column(least).component_mul(&rows) * sign;
-    let right = made.v_t?.row(least).transpose().component_mul(&columns);
-    Some(Critical {
-        value: sign * made.singular_values[least],
+    let (u, v_t) = (made.u?, made.v_t?);
+    // That of the determinant, as both vectors have it: where that is zero its own sign is rounding.
+    let sign = (u.determinant() * v_t.determinant()).signum();
+    let left = u.column(least).component_mul(&rows) * sign;
+    let right = v_t.row(least).transpose().component_mul(&columns);
+    // The iteration takes what is next to nothing for zero, and so hides how well it is known.
+    let value = left.dot(&(jacobian * &right));
+    value.is_finite().then(|| Critical {
+        value,
+        product: f64::NAN,
         pairs: vec![(left, right)],
     })
 }
@@ -252,7 +265,8 @@ fn pair_sum(jacobian: &Matrix) -> Option<Critical> {
     let left = plane(&both.transpose())?;
     // Dual to each other.
     let left = &left * (left.transpose() * &right).try_inverse()?.transpose();
-    let value = (left.transpose() * &even * &right).trace() * size;
+    let inside = left.transpose() * &even * &right;
+    let value = inside.trace() * size;
     let pairs = (0..2).map(|k| {
         let l = left.column(k).component_div(&units);
         let r = right.column(k).component_mul(&units);
@@ -260,6 +274,7 @@ fn pair_sum(jacobian: &Matrix) -> Option<Critical> {
     });
     value.is_finite().then(|| Critical {
         value,
+        product: inside.determinant() * size * size,
         pairs: pairs.collect(),
     })
 }

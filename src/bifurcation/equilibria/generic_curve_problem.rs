@@ -1,6 +1,7 @@
 //! The equations of a curve of bifurcations of equilibria, and what rounding makes of their solutions.
 
 use super::bialternate::rounding_of;
+use super::critical::{is_large, pair_frequency};
 use super::generic_curve::{EquilibriumBifurcation, EquilibriumCurve};
 use crate::continuation::ZeroProblem;
 use crate::error::{Error, Result};
@@ -98,12 +99,25 @@ impl Extended<'_> {
         /// So many points are looked at, and what their largest distance counts.
         const TRIED: usize = 4;
         const SAFETY: f64 = 2.0;
-        let of = |u: &Vector| {
+        /// Units in the last place of the entries of a Jacobian of many variables, of which a frequency is the sum of many.
+        const UNITS: f64 = 1.0;
+        let large = is_large(self.0.family.dimension());
+        let jacobian = |u: &Vector| {
             let (state, at) = self.at(&u.rows(0, u.len() - 1).into_owned(), u[u.len() - 1]);
-            frequency(&self.0.family.field(at).jacobian(&state))
+            self.0.family.field(at).jacobian(&state)
         };
+        let of_jacobian = |jacobian: &Matrix| match large {
+            true => pair_frequency(jacobian),
+            false => frequency(jacobian),
+        };
+        let of = |u: &Vector| of_jacobian(&jacobian(u));
         let here = of(u).filter(|_| self.0.kind == EquilibriumBifurcation::Hopf)?;
-        let mut far = 0.0_f64;
+        let mut far = match large {
+            true => rounding_of(&jacobian(u), UNITS, |j| {
+                of_jacobian(j).unwrap_or(f64::INFINITY)
+            }),
+            false => 0.0,
+        };
         for time in 0..TRIED {
             let moved = Vector::from_fn(u.len(), |i, _| u[i] + sign(i, time) * off[i]);
             far = far.max((of(&moved)? - here).abs());
