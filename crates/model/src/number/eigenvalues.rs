@@ -17,7 +17,7 @@ const BASES_OF_LARGE: usize = 1;
 ///
 /// Francis's shifts do not move some matrices whose eigenvalues all have one modulus, such as permutations and circulants: the iteration
 /// then ends after a bounded number of steps, and is done in another basis, by a reflection of the coordinates. That changes the
-/// eigenvalues by rounding alone.
+/// eigenvalues by rounding alone. At last, and of large matrices at once, single shifts in complex arithmetic are tried.
 ///
 /// # Panics
 /// If the matrix is not square.
