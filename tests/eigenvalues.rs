@@ -143,7 +143,7 @@ fn equal_pairs_of_a_ring_are_found() {
         }
         let exact = |pair: usize| {
             let sine = (0.5 * TAU * (pair / 2) as f64 / CELLS as f64).sin();
-            let sign = if pair % 2 == 0 { 1.0 } else { -1.0 };
+            let sign = if pair.is_multiple_of(2) { 1.0 } else { -1.0 };
             Complex::new(-4.0 * COUPLING * sine * sine, sign * square.sqrt())
         };
         are(&ring, &(0..2 * CELLS).map(exact).collect::<Vec<_>>(), 1e-11);
