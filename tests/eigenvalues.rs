@@ -122,3 +122,30 @@ fn symmetric_matrices_and_singular_values_end_too() {
     let null: DVector<f64> = null_vector(singular.clone()).expect("finite");
     assert!((singular * &null).amax() < 1e-15 && (null.norm() - 1.0).abs() < 1e-15);
 }
+
+/// Cells along a ring, in each of which two variables turn: at these rates double shifts stand still in every basis that is tried.
+#[test]
+fn equal_pairs_of_a_ring_are_found() {
+    const CELLS: usize = 6;
+    const COUPLING: f64 = 50.0;
+    for i in 0..40 {
+        let square = 0.3 - 0.0011 * i as f64;
+        let mut ring = DMatrix::zeros(2 * CELLS, 2 * CELLS);
+        for cell in 0..CELLS {
+            ring[(2 * cell, 2 * cell + 1)] = 1.0;
+            ring[(2 * cell + 1, 2 * cell)] = -square;
+            for part in 0..2 {
+                let at = |cell: usize| 2 * (cell % CELLS) + part;
+                ring[(at(cell), at(cell))] = -2.0 * COUPLING;
+                ring[(at(cell), at(cell + 1))] = COUPLING;
+                ring[(at(cell), at(cell + CELLS - 1))] = COUPLING;
+            }
+        }
+        let exact = |pair: usize| {
+            let sine = (0.5 * TAU * (pair / 2) as f64 / CELLS as f64).sin();
+            let sign = if pair.is_multiple_of(2) { 1.0 } else { -1.0 };
+            Complex::new(-4.0 * COUPLING * sine * sine, sign * square.sqrt())
+        };
+        are(&ring, &(0..2 * CELLS).map(exact).collect::<Vec<_>>(), 1e-11);
+    }
+}

@@ -72,6 +72,8 @@ mod many_dimensions;
 mod many_equilibria;
 mod many_methods;
 mod many_variables;
+mod many_variables_branches;
+mod many_variables_orbits;
 mod multiple_points;
 mod normal_forms_of_systems;
 mod numbers;

@@ -7,6 +7,18 @@ use crate::integrate::{
     MAX_STEPS, Tolerances, Work,
 };
 
+/// No more variables are few.
+const FEW: usize = 8;
+
+/// What counts of a sum over all directions, as the trace is one: of many their mean.
+pub(super) fn share(dimension: usize) -> f64 {
+    if dimension > FEW {
+        1.0 / dimension as f64
+    } else {
+        1.0
+    }
+}
+
 /// A piece of a trajectory, from a start that the caller knows.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
@@ -55,21 +67,30 @@ impl Arc {
             .unwrap_or_else(|| self.tangent_volume())
     }
 
-    /// The logarithm of the digits that the tangent's determinant loses to its rounding: of |M|^N / |det M|.
+    /// The logarithm of the digits that the tangent loses to its rounding: those of its determinant, |M|^N / |det M|; of many variables those of the direction
+    /// that shrinks most, |M| |M^-1|, as small losses in each of them would add up to one that none has.
     #[doc(hidden)]
     pub fn loss(&self) -> f64 {
-        self.loss_of(self.tangent.norm())
+        self.loss_of(&self.tangent)
     }
 
     /// The same with every variable in units of its size.
     pub(super) fn loss_in(&self, sizes: &Vector) -> f64 {
         let scaled = |i: usize, j: usize| self.tangent[(i, j)] * (sizes[j] / sizes[i]);
         let count = sizes.len();
-        self.loss_of(Matrix::from_fn(count, count, scaled).norm())
+        self.loss_of(&Matrix::from_fn(count, count, scaled))
     }
 
-    fn loss_of(&self, norm: f64) -> f64 {
-        let loss = self.end.len() as f64 * norm.ln() - self.volume();
+    fn loss_of(&self, tangent: &Matrix) -> f64 {
+        let count = self.end.len();
+        let loss = if count > FEW {
+            let inverse = tangent.clone().try_inverse();
+            inverse.map_or(f64::INFINITY, |inverse| {
+                tangent.norm().ln() + inverse.norm().ln() - (count as f64).ln()
+            })
+        } else {
+            count as f64 * tangent.norm().ln() - self.volume()
+        };
         // Of a tangent that is 0 to all digits all are lost.
         if loss.is_nan() {
             f64::INFINITY

@@ -1,6 +1,6 @@
 //! Shooting nodes: the polygon along a closed curve that a periodic orbit is solved on, and its mesh.
 
-use super::arc::Tracer;
+use super::arc::{Tracer, share};
 use crate::error::Result;
 use crate::field::Vector;
 use crate::integrate::{AnyField, Control, of_dimension};
@@ -138,7 +138,7 @@ impl ShootingNodes {
                         begin: begin + step.t0,
                         from: std::mem::replace(&mut from, to),
                         length,
-                        volume: 0.5 * (trace + next) * length,
+                        volume: 0.5 * (trace + next) * length * share(start.len()),
                         whole: true,
                     });
                     trace = next;

@@ -3,7 +3,7 @@
 //! At a corner, where a fast motion begins or ends, the plane across the flow sees the neighbouring orbits under any angle: a small
 //! displacement there is no small one of the orbit. The corner itself moves when the parameters change, and comes to a node next to it.
 
-use super::arc::Tracer;
+use super::arc::{Tracer, share};
 use super::linear::{axes, frame};
 use super::shooting_nodes::ShootingNodes;
 use crate::error::{Error, Result};
@@ -56,7 +56,11 @@ impl Spread {
     /// How many arcs a piece is worth.
     fn arcs(&self, dimension: usize, way: f64, volume: f64) -> f64 {
         let (most, from) = self.volume;
-        let of_volume = if dimension < from { 0.0 } else { volume / most };
+        let of_volume = if dimension < from {
+            0.0
+        } else {
+            volume * share(dimension) / most
+        };
         way / self.way + of_volume
     }
 }

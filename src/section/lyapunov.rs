@@ -21,7 +21,7 @@ use crate::integrate::{
     of_dimension,
 };
 use crate::number::{self, Uncertain};
-use nalgebra::{Complex, DMatrix};
+use nalgebra::{Complex, DMatrix, DVector};
 
 /// The tolerance of the tangents, and of the run that they are taken along.
 const TOLERANCE: f64 = 1e-13;
@@ -196,7 +196,15 @@ fn eigenvalues(matrix: &Matrix) -> Option<Vec<Complex<f64>>> {
 /// What an eigenvalue errs by: the product of the other factors J - lambda_j is what the adjugate of J - lambda_i is, and over
 /// the derivative of the characteristic polynomial the condition of lambda_i. Where they coincide they err by a root.
 fn rounding(matrix: &Matrix, values: &[Complex<f64>], i: usize) -> f64 {
+    /// Of more variables the condition is that of the eigenvectors: the product takes the fourth power of their number, and leaves the range of doubles.
+    const FEW: usize = 8;
     let (n, size) = (matrix.nrows(), matrix.norm());
+    if n > FEW {
+        let condition = condition(matrix, values[i]).unwrap_or(f64::INFINITY);
+        // Each has the rounding of as many more steps.
+        let simple = EIGENVALUES * (n as f64 / FEW as f64) * size * condition;
+        return if simple.is_finite() { simple } else { size };
+    }
     let matrix = matrix.map(|x| Complex::new(x, 0.0));
     let identity = DMatrix::<Complex<f64>>::identity(n, n);
     let (mut adjugate, mut slope) = (identity.clone(), 1.0);
@@ -211,6 +219,27 @@ fn rounding(matrix: &Matrix, values: &[Complex<f64>], i: usize) -> f64 {
     } else {
         worst
     }
+}
+
+/// By how much a change of the matrix may move an eigenvalue: one over the product of its unit eigenvectors from the left and from the right, which inverse
+/// iteration finds.
+fn condition(matrix: &Matrix, value: Complex<f64>) -> Option<f64> {
+    const ITERATIONS: usize = 3;
+    let n = matrix.nrows();
+    // Beside the eigenvalue, for the equations to have a solution.
+    let shift = value + Complex::from(EIGENVALUES * matrix.norm());
+    let shifted = matrix.map(Complex::from) - DMatrix::identity(n, n) * shift;
+    let vector = |matrix: DMatrix<Complex<f64>>| {
+        let lu = matrix.lu();
+        let mut x = DVector::from_fn(n, |k, _| Complex::from((0.7 + 1.3 * k as f64).cos()));
+        for _ in 0..ITERATIONS {
+            x = lu.solve(&x)?;
+            x /= Complex::from(x.norm());
+        }
+        Some(x)
+    };
+    let (right, left) = (vector(shifted.clone())?, vector(shifted.adjoint())?);
+    Some(1.0 / left.dotc(&right).norm())
 }
 
 /// From each return to the next; `None` if it was stopped.

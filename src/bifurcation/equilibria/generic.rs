@@ -2,7 +2,7 @@
 //!
 //! A family of fields is a function of one parameter. Test functions: the tangent's component along p (fold); the determinant
 //! of the extended Jacobian over the tangent (branch point); the determinant of the bialternate product 2 J (.) 1, the product of
-//! all sums of two eigenvalues (Hopf; Kuznetsov 2004, section 10.2.2). The derivative in p is that of the field, or where
+//! all sums of two eigenvalues (Hopf; Kuznetsov 2004, section 10.2.2); of many variables what takes the place of determinants (`critical`). The derivative in p is that of the field, or where
 //! the field has no parameter of this name a difference of fourth order, with some 11 digits of special points; third derivatives,
 //! for the first Lyapunov coefficient, are differences too.
 //!

@@ -1,9 +1,9 @@
 //! Curves of folds and of Hopf points of equilibria of any small system, in the plane of two of its parameters.
 //!
 //! Solved are f(y; p) = 0 and a determinant: of the Jacobian at a fold, of the bialternate product 2 J (.) 1 at a Hopf point
-//! (Kuznetsov 2004, section 10.3). All derivatives are the field's own.
+//! (Kuznetsov 2004, section 10.3); of many variables what takes their place (`critical`). All derivatives are the field's own.
 
-use super::bialternate::bialternate;
+use super::critical::{Slope, pair_function, zero_function};
 use super::generic_curve_observer::Observer;
 use super::generic_curve_problem::{Extended, SMALL, relative};
 use crate::bifurcation::Label;
@@ -41,6 +41,11 @@ impl std::fmt::Debug for EquilibriumCurve<'_> {
             .field("kind", &self.kind)
             .finish_non_exhaustive()
     }
+}
+
+/// The eigenvalue across equal parts.
+fn across(jacobian: &Matrix) -> f64 {
+    jacobian[(1, 1)] - jacobian[(1, 2)]
 }
 
 /// A point of the curve.
@@ -95,15 +100,25 @@ pub struct SharpEquilibrium {
 }
 
 impl EquilibriumCurve<'_> {
-    /// The matrix whose determinant vanishes, linear in the Jacobian.
-    pub(super) fn singular(&self, jacobian: &Matrix) -> Matrix {
+    /// What vanishes, as a function of the Jacobian.
+    pub(super) fn function(&self, jacobian: &Matrix) -> f64 {
         match self.kind {
-            EquilibriumBifurcation::Fold => jacobian.clone(),
-            EquilibriumBifurcation::Hopf => bialternate(jacobian),
-            EquilibriumBifurcation::Pitchfork => {
-                Matrix::from_element(1, 1, jacobian[(1, 1)] - jacobian[(1, 2)])
-            }
+            EquilibriumBifurcation::Fold => zero_function(jacobian),
+            EquilibriumBifurcation::Hopf => pair_function(jacobian),
+            EquilibriumBifurcation::Pitchfork => across(jacobian),
         }
+    }
+
+    /// How that depends on the Jacobian.
+    ///
+    /// # Errors
+    /// Those of [`Slope`].
+    pub(super) fn slope(&self, jacobian: &Matrix) -> Result<Slope> {
+        Ok(match self.kind {
+            EquilibriumBifurcation::Fold => Slope::of_zero_function(jacobian)?,
+            EquilibriumBifurcation::Hopf => Slope::of_pair_function(jacobian)?,
+            EquilibriumBifurcation::Pitchfork => Slope::Whole(Box::new(across)),
+        })
     }
 
     /// The number of unknowns of a state: where parts move alike, one for these.

@@ -1,8 +1,9 @@
 //! What is special on a curve of bifurcations of equilibria: cusps, degenerate Hopf points, double and triple eigenvalues.
 
-use super::bialternate::{CHANGE, bialternate, lyapunov, lyapunov_by};
+use super::bialternate::{CHANGE, lyapunov, lyapunov_by};
+use super::critical::{Slope, sum_function, zero_function};
 use super::generic_curve::{EquilibriumBifurcation, EquilibriumCurvePoint, FirstCoordinate};
-use super::generic_curve_problem::{Extended, alike, determinant_slope, frequency, sign};
+use super::generic_curve_problem::{Extended, alike, frequency, sign};
 use crate::bifurcation::Label;
 use crate::continuation::{CurveObserver, CurvePoint, PointKind};
 use crate::error::Result;
@@ -47,16 +48,12 @@ impl Observer<'_, '_> {
                 // Its sign is that of the way along the curve, which has one near cusps.
                 let oriented = kernel.dot(&along).abs() > ORIENTED;
                 let unknown = if oriented { 1.0 } else { f64::NAN };
-                let unit = |i: usize| Vector::from_fn(n, |k, _| f64::from(u8::from(i == k)));
-                let columns = (0..n).map(|i| field.second_derivative(&state, &kernel, &unit(i)));
-                let change = Matrix::from_columns(&columns.collect::<Vec<_>>());
-                [
-                    determinant_slope(&jacobian)?(&change) * unknown,
-                    bialternate(&jacobian).determinant(),
-                ]
+                let change = |v: &Vector| field.second_derivative(&state, &kernel, v);
+                let bends = Slope::of_zero_function(&jacobian)?.along(n, change);
+                [bends * unknown, sum_function(&jacobian)]
             }
             EquilibriumBifurcation::Hopf => {
-                let (omega, determinant) = (frequency(&jacobian), jacobian.determinant());
+                let (omega, determinant) = (frequency(&jacobian), zero_function(&jacobian));
                 let coefficient = omega.and_then(|omega| lyapunov(&field, &state, omega));
                 // The coefficient has a pole where the determinant is zero, and another sign behind it.
                 let without_pole = coefficient.map_or(f64::NAN, |l_1| l_1 * determinant);
@@ -84,7 +81,7 @@ impl Observer<'_, '_> {
         };
         let by = |change: f64| lyapunov_by(&field, &state, omega, change);
         match (by(CHANGE), by(2.0 * CHANGE)) {
-            (Some(near), Some(far)) => (far - near).abs() * jacobian.determinant().abs(),
+            (Some(near), Some(far)) => (far - near).abs() * zero_function(&jacobian).abs(),
             _ => f64::INFINITY,
         }
     }

@@ -1,12 +1,13 @@
 //! The equations of a curve of bifurcations of equilibria, and what rounding makes of their solutions.
 
 use super::bialternate::rounding_of;
+use super::critical::{is_large, pair_frequency};
 use super::generic_curve::{EquilibriumBifurcation, EquilibriumCurve};
 use crate::continuation::ZeroProblem;
 use crate::error::{Error, Result};
 use crate::field::{Matrix, Vector};
 use crate::integrate::{AnyExact, AnyField};
-use crate::number::{Uncertain, eigenvalues, null_vector, singular_values};
+use crate::number::{Uncertain, eigenvalues, null_vector};
 
 /// f and the determinant as functions of the state and the first coordinate, and of the second.
 pub(super) struct Extended<'a>(pub &'a EquilibriumCurve<'a>);
@@ -98,12 +99,25 @@ impl Extended<'_> {
         /// So many points are looked at, and what their largest distance counts.
         const TRIED: usize = 4;
         const SAFETY: f64 = 2.0;
-        let of = |u: &Vector| {
+        /// Units in the last place of the entries of a Jacobian of many variables, of which a frequency is the sum of many.
+        const UNITS: f64 = 1.0;
+        let large = is_large(self.0.family.dimension());
+        let jacobian = |u: &Vector| {
             let (state, at) = self.at(&u.rows(0, u.len() - 1).into_owned(), u[u.len() - 1]);
-            frequency(&self.0.family.field(at).jacobian(&state))
+            self.0.family.field(at).jacobian(&state)
         };
+        let of_jacobian = |jacobian: &Matrix| match large {
+            true => pair_frequency(jacobian),
+            false => frequency(jacobian),
+        };
+        let of = |u: &Vector| of_jacobian(&jacobian(u));
         let here = of(u).filter(|_| self.0.kind == EquilibriumBifurcation::Hopf)?;
-        let mut far = 0.0_f64;
+        let mut far = match large {
+            true => rounding_of(&jacobian(u), UNITS, |j| {
+                of_jacobian(j).unwrap_or(f64::INFINITY)
+            }),
+            false => 0.0,
+        };
         for time in 0..TRIED {
             let moved = Vector::from_fn(u.len(), |i, _| u[i] + sign(i, time) * off[i]);
             far = far.max((of(&moved)? - here).abs());
@@ -159,7 +173,7 @@ impl Extended<'_> {
     }
 
     fn determinant(&self, jacobian: &Matrix) -> f64 {
-        self.0.singular(jacobian).determinant()
+        self.0.function(jacobian)
     }
 
     /// The residuals that are met when the unknowns are changed in their last digit, with what rounding is left in the equations.
@@ -199,27 +213,6 @@ impl Extended<'_> {
     }
 }
 
-/// The derivative of det A along a change of A: the trace of the adjugate times it, which exists where A is singular.
-pub(super) fn determinant_slope(a: &Matrix) -> Result<impl Fn(&Matrix) -> f64 + use<>> {
-    let decomposed = singular_values(a.clone(), [true, true]);
-    let parts = decomposed.and_then(|made| Some((made.u?, made.v_t?, made.singular_values)));
-    let Some((u, v_t, sigma)) = parts else {
-        return Err(Error::NotConverged {
-            what: "the adjugate of a Jacobian",
-            iterations: 0,
-            residual: f64::INFINITY,
-            tolerance: 0.0,
-        });
-    };
-    let sign = u.determinant() * v_t.determinant();
-    Ok(move |change: &Matrix| {
-        let turned = u.transpose() * change * v_t.transpose();
-        let others = |i: usize| (0..sigma.len()).filter(move |&j| j != i);
-        let term = |i: usize| turned[(i, i)] * others(i).map(|j| sigma[j]).product::<f64>();
-        sign * (0..sigma.len()).map(term).sum::<f64>()
-    })
-}
-
 /// That a field can be differentiated in parameters.
 pub(super) fn parametrised(field: &AnyField<'_>) -> Result<()> {
     if !field.parameter_names().is_empty() {
@@ -240,9 +233,9 @@ impl ZeroProblem for Extended<'_> {
     fn residual(&self, u: &Vector, lambda: f64) -> Result<Vector> {
         let (y, at) = self.at(u, lambda);
         let field = self.0.family.field(at);
-        let singular = self.0.singular(&field.jacobian(&y));
+        let critical = self.determinant(&field.jacobian(&y));
         let rates = field.f(&y).rows(0, self.0.unknowns()).into_owned();
-        Ok(rates.push(singular.determinant()))
+        Ok(rates.push(critical))
     }
 
     fn jacobian(&self, u: &Vector, lambda: f64) -> Result<Matrix> {
@@ -251,26 +244,23 @@ impl ZeroProblem for Extended<'_> {
         parametrised(&field)?;
         let (all, n) = (y.len(), self.0.unknowns());
         let j = field.jacobian(&y);
-        let slope = determinant_slope(&self.0.singular(&j))?;
-        let units = (0..all).map(|i| Vector::from_fn(all, |k, _| f64::from(u8::from(i == k))));
-        let units: Vec<_> = units.collect();
+        let slope = self.0.slope(&j)?;
         let mut matrix = Matrix::zeros(n + 1, n + 2);
-        let mut put = |column: usize, f: &Vector, of_jacobian: &Matrix| {
+        let mut put = |column: usize, f: &Vector, of_jacobian: &dyn Fn(&Vector) -> Vector| {
             let rates = f.rows(0, n);
             matrix.column_mut(column).rows_mut(0, n).copy_from(&rates);
-            matrix[(n, column)] = slope(&self.0.singular(of_jacobian));
+            matrix[(n, column)] = slope.along(all, of_jacobian);
         };
         for (i, along) in self.0.directions().column_iter().enumerate() {
             let along = along.into_owned();
-            let columns = units.iter().map(|v| field.second_derivative(&y, &along, v));
-            let columns = Matrix::from_columns(&columns.collect::<Vec<_>>());
-            put(i, &(&j * along), &columns);
+            let change = |v: &Vector| field.second_derivative(&y, &along, v);
+            put(i, &(&j * &along), &change);
         }
         let scale = self.0.family.scale(at);
         for (k, place) in self.0.family.plane().into_iter().enumerate() {
             let f = field.parameter_derivative(&y, place) * scale[k];
             let of_jacobian = field.parameter_jacobian(&y, place) * scale[k];
-            put(n + k, &f, &of_jacobian);
+            put(n + k, &f, &|v| &of_jacobian * v);
         }
         Ok(matrix)
     }

@@ -1,6 +1,7 @@
 //! What is watched along a branch of equilibria: folds, branch points and Hopf points, multiple branch points ahead, and the ends of the box.
 
-use super::bialternate::{bialternate, lyapunov, rounding_of};
+use super::bialternate::{lyapunov, rounding_of};
+use super::critical::{is_large, least_of, sum_function};
 use super::generic::{FieldEquilibria, FoundEquilibrium};
 use super::generic_crossing::{BranchPoint, branch_point};
 use super::generic_curve_problem::sign;
@@ -9,7 +10,7 @@ use super::unexplained::{crossings, unstable};
 use crate::bifurcation::Label;
 use crate::continuation::{CurveObserver, CurvePoint, PointKind};
 use crate::error::Result;
-use crate::field::{Matrix, Vector};
+use crate::field::Vector;
 use crate::number::singular_values;
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -38,7 +39,7 @@ pub(super) struct EquilibriumObserver<'a, 'b> {
     ahead: Option<(MultiplePoint, bool)>,
     /// [`slope`] at the last point.
     slope: f64,
-    /// [`EquilibriumObserver::side`] at the last point, and how long the branch was there.
+    /// [`EquilibriumObserver::falling`] at the last point, and how long the branch was there.
     fallen: Option<(f64, f64)>,
     /// The last branch point, in (state, parameter).
     branch_point: Option<Vector>,
@@ -90,22 +91,26 @@ impl EquilibriumObserver<'_, '_> {
         singular_values(rows, [false, false]).is_some_and(|of| of.singular_values.min() < ZERO)
     }
 
-    /// The product of all sums of two eigenvalues.
+    /// The product of all sums of two eigenvalues, or what is zero with it.
     fn sums(&self, y: &Vector, p: f64) -> f64 {
         /// Units in the last place that are rounding, of the entries and of the state: what a sum of entries cancels the entries' own rounding does
         /// not show.
         const UNITS: f64 = 32.0;
         const TRIED: usize = 3;
-        let product = |jacobian: &Matrix| bialternate(jacobian).determinant();
+        /// Of many variables: what rounding can't make of zero.
+        const CERTAIN: f64 = 1e-3;
         let jacobian = self.family.jacobian(y, p);
-        let here = product(&jacobian);
+        let here = sum_function(&jacobian);
+        if is_large(y.len()) && here.abs() > CERTAIN {
+            return here;
+        }
         let moved = (0..TRIED).map(|time| {
             let off = |i: usize| 1.0 + sign(i, time) * UNITS * f64::EPSILON;
             let beside = Vector::from_fn(y.len(), |i, _| y[i] * off(i));
-            (product(&self.family.jacobian(&beside, p)) - here).abs()
+            (sum_function(&self.family.jacobian(&beside, p)) - here).abs()
         });
         let of_state = moved.fold(0.0, f64::max);
-        certain(here, rounding_of(&jacobian, UNITS, product) + of_state)
+        certain(here, rounding_of(&jacobian, UNITS, sum_function) + of_state)
     }
 
     /// Whether the parameter is on one side of its value here, before and behind: where a branch bends but goes on, its slope is zero too. True where
@@ -155,24 +160,45 @@ impl EquilibriumObserver<'_, '_> {
     /// Its sign changes at branch points, and where a step has come onto another branch.
     fn side(&self, point: &CurvePoint) -> f64 {
         let square = self.family.bordered(&point.u, point.lambda, &point.tangent);
-        square.determinant()
+        match is_large(point.u.len()) {
+            false => square.determinant(),
+            true => least_of(&square),
+        }
+    }
+
+    /// What falls to zero at a multiple branch point, and the size below which singular values of the Jacobian may vanish there: of many variables the second
+    /// least singular value, as their determinant falls by half and more on any step.
+    fn falling(&self, point: &CurvePoint) -> (f64, f64) {
+        /// Near the point a singular value that vanishes there is smaller than this part of the Jacobian's norm elsewhere on the branch; or than so many times
+        /// another one that does.
+        const SMALL: f64 = 0.3;
+        const ALIKE: f64 = 3.0;
+        if !is_large(point.u.len()) {
+            return (self.side(point), SMALL * self.norm);
+        }
+        let rows = self.family.extended(&point.u, point.lambda);
+        let values = singular_values(rows, [false, false]).map(|of| of.singular_values);
+        let mut values: Vec<f64> = values.iter().flatten().copied().collect();
+        values.sort_by(f64::total_cmp);
+        let second = values.get(1).copied().unwrap_or(f64::NAN);
+        (second, ALIKE * second)
     }
 
     /// A multiple branch point that the branch comes to straight from here, and whether it turns back there: the parameter then depends on the way to it
-    /// by an even power. [`EquilibriumObserver::side`], which may keep its sign there, has fallen since the point before.
+    /// by an even power. [`EquilibriumObserver::falling`], which may keep its sign there, has fallen since the point before.
     fn look_ahead(&mut self, point: &CurvePoint) -> Option<(MultiplePoint, bool)> {
         /// In longest steps.
         const AHEAD: f64 = 2.0;
         /// The cosine of a direction that leads there.
         const STRAIGHT: f64 = 0.9;
         let n = point.u.len();
-        let (side, here) = (self.side(point), point.arclength);
-        let (before, from) = self.fallen.replace((side, here))?;
-        let left = side * (here - from) / (before - side);
+        let ((value, small), here) = (self.falling(point), point.arclength);
+        let (before, from) = self.fallen.replace((value, here))?;
+        let left = value * (here - from) / (before - value);
         if !(left >= 0.0 && left < AHEAD * self.longest) {
             return None;
         }
-        let found = MultiplePoint::near(self.family, &point.u, point.lambda, self.norm)?;
+        let found = MultiplePoint::near(self.family, &point.u, point.lambda, small)?;
         let way = found.place() - point.u.push(point.lambda);
         let (distance, along) = (way.norm(), point.tangent.dot(&way));
         if distance > AHEAD * self.longest || along < STRAIGHT * distance {

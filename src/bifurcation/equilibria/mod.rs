@@ -6,6 +6,7 @@
 mod bialternate;
 mod branch;
 mod branch_observer;
+mod critical;
 mod crossing;
 mod cubic;
 mod curves;

@@ -29,8 +29,6 @@ pub struct MultiplePoint {
 
 /// Most eigenvalues that are looked at.
 const MOST: usize = 8;
-/// Near the point a singular value that vanishes there is smaller than this part of the Jacobian's norm elsewhere on the branch.
-const SMALL: f64 = 0.3;
 /// Iterations; a correction that is the last, and one that may be left to rounding, both relative.
 const ITERATIONS: usize = 30;
 const DONE: f64 = 1e-14;
@@ -53,19 +51,19 @@ impl MultiplePoint {
         (self.kernel.transpose() * away).norm()
     }
 
-    /// The point near a place of a branch, on which Jacobians have norms up to `norm`.
+    /// The point near a place of a branch, where no singular values may vanish but those up to this size.
     pub(super) fn near(
         family: &FieldEquilibria<'_>,
         state: &Vector,
         parameter: f64,
-        norm: f64,
+        most: f64,
     ) -> Option<Self> {
         let rows = family.extended(state, parameter);
         let decomposed = singular_values(rows, [true, false])?;
         let (u, values) = (decomposed.u?, decomposed.singular_values);
         let mut order: Vec<usize> = (0..values.len()).collect();
         order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
-        let small = order.iter().filter(|&&i| values[i] <= SMALL * norm);
+        let small = order.iter().filter(|&&i| values[i] <= most);
         let small = small.count().min(MOST);
         (2..=small).rev().find_map(|m| {
             let columns: Vec<Vector> = order[..m]

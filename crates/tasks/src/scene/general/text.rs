@@ -53,7 +53,6 @@ impl TextSubject {
     /// # Errors
     /// Those of the box and of the start.
     pub fn new(model: TextModel, search: &SearchOptions, orbits: bool) -> Result<Self> {
-        model.checked_few()?;
         let (within, start) = (search.within.as_deref(), search.start.as_deref());
         let period = search
             .period_guess

@@ -218,7 +218,6 @@ fn of_a_system(options: &SweepOptions) -> Result<()> {
 fn swept(options: &SweepOptions) -> Result<SweptGrid> {
     let axes = Axes::read(options)?;
     if let Some(model) = TextModel::named(&options.slab.text)? {
-        model.checked_few()?;
         let states = model.system.states().to_vec();
         let names = axes.names.iter().cloned();
         let parameters = names.map(|name| (name, Quantity::Number)).collect();

@@ -152,22 +152,6 @@ impl TextModel {
         of_slab.unwrap_or(0.0)
     }
 
-    /// That there are no more variables than return maps, orbits and curves are made of.
-    ///
-    /// # Errors
-    /// [`Error::Input`] where there are.
-    pub(in crate::scene) fn checked_few(&self) -> Result<()> {
-        const MOST: usize = 8;
-        let count = self.system.states().len();
-        if count <= MOST {
-            return Ok(());
-        }
-        Err(Error::Input(format!(
-            "the system has {count} states, and this command takes at most {MOST}; `integrate` and `equilibria` take up to {}",
-            TextSystem::LARGEST
-        )))
-    }
-
     /// What it is called.
     pub fn name(&self) -> &str {
         let of = |key: &str| self.echo.get(key).and_then(Value::as_str);

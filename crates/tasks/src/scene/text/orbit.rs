@@ -55,7 +55,6 @@ impl TextOrbitPlan {
     /// # Errors
     /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
     pub fn new(options: &OrbitOptions, model: TextModel) -> Result<Self> {
-        model.checked_few()?;
         let usual = OrbitAccuracy::of(Choice::named(&options.method)?);
         if options.max_steps == 0 {
             return Err(Error::parameter("max-steps", 0, "at least 1"));

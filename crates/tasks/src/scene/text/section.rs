@@ -94,7 +94,6 @@ impl TextSectionPlan {
     /// # Errors
     /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
     pub fn new(options: &SectionOptions, model: TextModel) -> Result<Self> {
-        model.checked_few()?;
         if model.system.states().len() < 2 {
             return Err(Error::Input(
                 "a system of one state has no return map: it never comes back".into(),
