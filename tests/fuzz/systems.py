@@ -4,6 +4,7 @@
     tests/fuzz/systems.py --binary target/release/twinslip --count 20000 --seed 1 --jobs 2
 
 Two ends that differ by more than both bounds, or a singularity told where another method has a state, are a fault of at least one.
+Taylor's method runs once with its formulas compiled before the first step and once without: both must tell the same, to the last bit.
 A system is known by its seed and number: `--seed 1 --only 17 --show` prints it. Status 1 if any failed. Python's standard library only.
 """
 
@@ -17,6 +18,8 @@ import sys
 import tempfile
 from collections import Counter
 
+#: How Taylor's method may run its formulas.
+WAYS = ["off", "always"]
 METHODS = ["taylor", "rodas5p", "radau", "cvode-bdf"]
 STATES = ["x", "y", "z", "w"]
 #: Seconds; who takes longer is counted, and is no fault: tests never time anything.
@@ -90,11 +93,11 @@ class System:
         return "\n".join(lines) + "\n"
 
 
-def ended(binary, file, until, options):
+def ended(binary, file, until, options, way="on"):
     """What a run comes to: ("end", values, bounds), ("singular", words), ("fails", words), ("slow", "") or ("fault", words)."""
     line = [binary, "integrate", "--system", file, "--until", str(until), "--final-only", "--format", "json", *options]
     try:
-        ran = subprocess.run(line, capture_output=True, text=True, timeout=LIMIT)
+        ran = subprocess.run(line, capture_output=True, text=True, timeout=LIMIT, env={**os.environ, "TWINSLIP_COMPILE": way})
     except subprocess.TimeoutExpired:
         return "slow", ""
     said = next((line for line in ran.stderr.splitlines() if line.startswith("error: ")), ran.stderr.strip()[-200:])
@@ -132,6 +135,9 @@ def case(binary, seed, number, show=False):
         ends = [(method, ended(binary, file.name, system.until, ["--method", method, "--estimate-error"])) for method in METHODS]
         faults = [(method, end[1]) for method, end in ends if end[0] == "fault"]
         apart = judged(ends)
+        ways = [ended(binary, file.name, system.until, ["--method", "taylor", "--estimate-error"], way) for way in WAYS]
+        if ways[0] != ways[1] and ("slow", "") not in ways:
+            faults.append(("compiled", *ways))
         if apart or show:
             tight = ["--method", "rodas5p", "--rtol", "1e-12", "--atol", "1e-14", "--estimate-error"]
             ends.append(("tight", ended(binary, file.name, system.until, tight)))
