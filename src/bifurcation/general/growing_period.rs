@@ -100,13 +100,24 @@ impl Periods {
         CORRECTED * all.fold(0.0, f64::max)
     }
 
-    /// Whether the coordinate stayed the same, but for that, on so many of the last steps.
-    pub fn stay(&self, steps: usize) -> bool {
-        let Some(first) = self.0.len().checked_sub(steps + 1) else {
-            return false;
-        };
-        let mut pairs = self.0[first..].windows(2);
-        pairs.all(|pair| (pair[1][0] - pair[0][0]).abs() <= self.off())
+    /// Whether the last two orbits have the same coordinate but for that.
+    pub fn stay(&self) -> bool {
+        self.last_that_stay(1).is_some()
+    }
+
+    /// Whether on some steps the coordinate stayed the same, but for that, while the period grew: at a fold it stays as well.
+    pub fn grow_in_place(&self) -> bool {
+        const STEPS: usize = 3;
+        const GROWN: f64 = 1.05;
+        let last = self.last_that_stay(STEPS);
+        last.is_some_and(|orbits| orbits[STEPS][1] > GROWN * orbits[0][1])
+    }
+
+    /// The orbits at the ends of so many of the last steps, if the coordinate stayed the same on all of them.
+    fn last_that_stay(&self, steps: usize) -> Option<&[[f64; 2]]> {
+        let last = &self.0[self.0.len().checked_sub(steps + 1)?..];
+        let stays = |pair: &[[f64; 2]]| (pair[1][0] - pair[0][0]).abs() <= self.off();
+        last.windows(2).all(stays).then_some(last)
     }
 
     /// The limit of the coordinate at the end of the branch, whose last orbit this is; `None` where the period does not grow without bound

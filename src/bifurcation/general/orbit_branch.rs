@@ -20,9 +20,6 @@ use std::ops::ControlFlow::{self, Break, Continue};
 /// The most steps on a branch.
 const STEPS: usize = 5000;
 
-/// Steps on which a parameter varies by no more than its error, behind which a branch whose period grows is followed no further.
-const STEADY: usize = 3;
-
 /// How many of the last orbits of a branch may say nothing of its limit.
 const LEFT_OUT: usize = 4;
 
@@ -134,7 +131,7 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         let mut left_out = 0;
         let limit = loop {
             let limit = periods.limit(self.set.branch, last);
-            if limit.is_some() || (left_out >= LEFT_OUT && !periods.stay(1)) {
+            if limit.is_some() || (left_out >= LEFT_OUT && !periods.stay()) {
                 break limit?;
             }
             periods.pop();
@@ -270,7 +267,7 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         self.periods.push(site.at[FREE], site.shooting.period());
         let row = self.set.row(self.number, here, None);
         self.tell(GeneralEvent::Row(row), teller)?;
-        let end = match self.periods.stay(STEADY) {
+        let end = match self.periods.grow_in_place() {
             true => self.homoclinic_end(here),
             false => None,
         };
