@@ -304,15 +304,16 @@ impl<'a, T: Element> Interpreted<'a, T> {
         (log, before - last - log >= 0.0)
     }
 
-    /// The largest j-th coefficient, in what may err.
+    /// The largest j-th coefficient, in what may err. A loop: a closure would not be compiled for the processor.
     #[inline(always)]
     fn largest(&self, j: usize, tolerances: (f64, f64)) -> f64 {
-        let relative = |(i, x): (usize, &T)| {
+        let mut largest = 0.0;
+        for (i, x) in self.reached.x.iter().enumerate() {
             let may_err = self.may_err(i, x.abs(), tolerances);
-            (self.rows.row(i)[j] / may_err).abs().largest_lane()
-        };
-        let x = self.reached.x.iter().enumerate();
-        x.map(relative).fold(0.0, f64::max)
+            let relative = (self.rows.row(i)[j] / may_err).abs().largest_lane();
+            largest = f64::max(largest, relative);
+        }
+        largest
     }
 
     /// The logarithm of a step, shortened to where the last terms cease to grow.
