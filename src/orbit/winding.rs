@@ -1,8 +1,8 @@
-//! How much longer an orbit may become in a step where it makes one more turn about an equilibrium or another orbit.
+//! How much the period may change in a step where the orbit gains turns about an equilibrium or about another periodic orbit.
 //!
-//! Beside a homoclinic orbit the branch winds: parameter and multipliers come back after every turn that the orbit makes more about the saddle-focus, or the
-//! periodic orbit, that it comes close to (Glendinning & Sparrow 1984, J. Stat. Phys. 35, 645; Gaspard & Wang 1987, J. Stat. Phys. 48, 151). A step over
-//! a whole turn sees the same slopes at both of its ends, and the two folds between them are lost.
+//! Beside a homoclinic orbit a branch winds: with every further turn about the saddle-focus, or about the periodic orbit, the parameter and the multipliers come
+//! back to nearly the same values (Glendinning & Sparrow 1984, J. Stat. Phys. 35, 645; Gavrilov & Shilnikov 1972, Math. USSR Sbornik 17, 467). A step over
+//! a whole turn has the same slopes at both of its ends, and the two folds between them would be lost.
 
 use super::shooting_nodes::ShootingNodes;
 use super::spread::extents;
@@ -31,11 +31,11 @@ pub(super) fn quarter_turn(
     (speed < LINGERS * turns).then(|| FRAC_PI_2 / turns)
 }
 
-/// The turns of an orbit: to each of its arcs, the time between the two maxima of its liveliest variable that the arc is between.
+/// The turns of an orbit: for each arc, the time between the maxima before and after it of the variable that has most of them.
 pub(super) struct Turns(Vec<f64>);
 
 impl Turns {
-    /// Those that are seen at its nodes, where these are the rates; `None` where it has one maximum.
+    /// By the signs of the rates at its nodes; `None` where no variable has more than one maximum.
     pub fn of(orbit: &ShootingNodes, flows: &[Vector]) -> Option<Self> {
         let nodes = flows.len();
         let maxima = |i: usize| {
@@ -58,7 +58,7 @@ impl Turns {
         Some(Turns(times))
     }
 
-    /// Whether an orbit that takes these times between its nodes may make one turn more than the one that took those before.
+    /// Whether the orbit may have gained or lost a turn as the times between its nodes changed from `before` to `then`.
     pub fn may_be_more(&self, before: &[f64], then: &[f64]) -> bool {
         let times = before.iter().zip(then);
         let parts = times

@@ -1,7 +1,7 @@
-//! What of a Jacobian vanishes at folds and Hopf points, in few variables and in many.
+//! Functions of the Jacobian that are zero at folds and at Hopf points, for few variables and for many.
 //!
-//! In few these are determinants: of the Jacobian and of its bialternate product. In many they leave the range of doubles, and the second one takes the sixth
-//! power of the number of variables. There these are the least singular value, with the sign of the determinant, and of all sums of two eigenvalues the one
+//! For few these are determinants: of the Jacobian and of its bialternate product. For many they leave the range of doubles, and the second one takes a time that
+//! grows as the sixth power of the number of variables. There these are the least singular value, with the sign of the determinant, and of all sums of two eigenvalues the one
 //! nearest to zero, with the sign of their product. A sum of two eigenvalues is the trace of what the Jacobian is in their plane, which stays smooth where the
 //! two meet.
 

@@ -43,7 +43,7 @@ impl Folds {
     }
 
     /// The two coordinates between which the branch goes to and fro without end, its period longer by the same time after every turn: as it does beside
-    /// orbits that are homoclinic to another periodic orbit (Gaspard & Wang 1987, J. Stat. Phys. 48, 151), whose tangencies the folds tend to.
+    /// orbits that are homoclinic to another periodic orbit (Gavrilov & Shilnikov 1972, Math. USSR Sbornik 17, 467), whose tangencies the folds tend to.
     pub fn winding(&self) -> Option<[f64; 2]> {
         /// Folds that show it: three turns.
         const FOLDS: usize = 6;
