@@ -117,6 +117,43 @@ fn version_says_what_the_program_computes_with() {
 }
 
 #[test]
+fn how_formulas_are_carried_out_is_said() {
+    let runs = [
+        "--version",
+        "integrate --system lorenz --until 1 --explain -q",
+        "orbit --system van-der-pol --explain -q",
+        "section --system lorenz --surface z=27 --returns 3 --explain -q",
+    ];
+    for command in runs {
+        let with = |way: &str| {
+            let ended = crate::command::program()
+                .args(command.split(' '))
+                .env("TWINSLIP_COMPILE", way)
+                .env_remove("TWINSLIP_VECTORS")
+                .output()
+                .expect("the program starts");
+            String::from_utf8_lossy(&[ended.stdout, ended.stderr].concat()).into_owned()
+        };
+        assert!(
+            with("off").contains("in loops"),
+            "{command}: {}",
+            with("off")
+        );
+        // Where the processor has no AVX2 nothing is compiled.
+        #[cfg(target_arch = "x86_64")]
+        let compiles = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
+        #[cfg(not(target_arch = "x86_64"))]
+        let compiles = false;
+        let always = with("always");
+        assert_eq!(
+            always.contains("before the first step"),
+            compiles,
+            "{command}: {always}"
+        );
+    }
+}
+
+#[test]
 fn shells_complete_commands_options_and_names() {
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let ended = run(&["completions", shell]);

@@ -40,7 +40,7 @@ use crate::field::{Jacobian, State, VectorField};
 use crate::number::DoubleDouble;
 use crate::series::Expansion;
 #[doc(hidden)]
-pub use crate::series::{COMPILE, allowed_compiling};
+pub use crate::series::{COMPILE, allowed_compiling, used_compiling};
 pub use crate::series::{VECTORS, Vectors, allowed_vectors, used_vectors};
 pub(crate) use singularity::step_underflow;
 use std::ops::Deref;

@@ -64,7 +64,9 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
 use twinslip::error::Error;
-use twinslip::integrate::{VECTORS, allowed_compiling, allowed_vectors, used_vectors};
+use twinslip::integrate::{
+    COMPILE, VECTORS, allowed_compiling, allowed_vectors, used_compiling, used_vectors,
+};
 use twinslip_tasks::scene;
 
 /// Sliding modes of interacting frictional interfaces: friction laws, runs in time, equilibria, periodic orbits, return
@@ -116,8 +118,9 @@ pub fn program() -> clap::Command {
             ("parquet", cfg!(feature = "parquet")),
         ];
         let mut text = format!(
-            "{}\nSUNDIALS {sundials}\nvector instructions {vectors} ({VECTORS} holds it to fewer)",
-            env!("CARGO_PKG_VERSION")
+            "{}\nSUNDIALS {sundials}\nvector instructions {vectors} ({VECTORS} holds it to fewer)\nformulas are {} ({COMPILE}=off, on or always)",
+            env!("CARGO_PKG_VERSION"),
+            used_compiling().in_words()
         );
         for (name, _) in features.iter().filter(|(_, on)| *on) {
             text += &format!("\nwith {name}");

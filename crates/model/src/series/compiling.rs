@@ -35,8 +35,21 @@ pub fn allowed() -> Result<Compiling> {
     ALLOWED.get_or_init(asked).clone()
 }
 
-/// What holds for the process.
-pub(super) fn used() -> Compiling {
+impl Compiling {
+    /// As it is told to users.
+    #[doc(hidden)]
+    pub fn in_words(self) -> &'static str {
+        match self {
+            Compiling::Off => "carried out in loops",
+            Compiling::On => "compiled to machine code once a run has made enough steps",
+            Compiling::Always => "compiled to machine code before the first step",
+        }
+    }
+}
+
+/// What holds for the process: without AVX2 nothing is compiled.
+#[doc(hidden)]
+pub fn used() -> Compiling {
     #[cfg(target_arch = "x86_64")]
     if super::vectors::avx2().is_some() {
         return allowed().unwrap_or(Compiling::On);

@@ -57,7 +57,9 @@ use crate::number::polynomial::evaluate;
 pub(crate) use columns::{Along, JacobianTerm, VariationalEquations};
 #[doc(hidden)]
 pub use compiled::BothWays;
-pub use compiling::{Compiling, VARIABLE as COMPILE, allowed as allowed_compiling};
+pub use compiling::{
+    Compiling, VARIABLE as COMPILE, allowed as allowed_compiling, used as used_compiling,
+};
 pub use cubic::Jet3;
 pub(crate) use element::Element;
 pub use equations::Equations;

@@ -210,7 +210,7 @@ impl<'s> GeneralLocusPlan<'s> {
         let method = match self.kind.orbits {
             true => "taylor, tangents on, multiple shooting, both parameters unknown",
             false => {
-                "the equilibrium and a determinant, both parameters unknown; nothing is integrated"
+                "the equilibrium and what vanishes there, both parameters unknown; nothing is integrated"
             }
         };
         format!(

@@ -14,7 +14,7 @@ use twinslip::field::Vector;
 use twinslip::friction::positive;
 #[cfg(not(feature = "sundials"))]
 use twinslip::integrate::RosenbrockMethod;
-use twinslip::integrate::{AnyField, Choice, MotionUnits, Tolerances};
+use twinslip::integrate::{AnyField, Choice, MotionUnits, Tolerances, used_compiling};
 use twinslip::orbit::{
     AlongArcs, Crosscheck, FoundOrbit, Orbit, OrbitAccuracy, ShootingNodes, crosscheck_of,
     find_from,
@@ -98,12 +98,14 @@ impl TextOrbitPlan {
   dimension         {}
   guess             {guess}
   method            {}, tangents on, multiple shooting; rtol {:e}{}
+  formulas          {}
   crosscheck        {second}
   dense output      {}",
             self.start.len(),
             run_method(self.accuracy.method).name(),
             self.accuracy.tolerances.rtol,
             longest_in_words(self.accuracy.tolerances, self.model.units()),
+            used_compiling().in_words(),
             dense_output(self.rows, self.picture)
         )
     }

@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use std::borrow::Cow;
 use twinslip::error::{Error, Result};
 use twinslip::field::Vector;
-use twinslip::integrate::{Choice, MotionUnits, Tolerances};
+use twinslip::integrate::{Choice, MotionUnits, Tolerances, used_compiling};
 use twinslip::model::TextSystem;
 
 /// When a run begins.
@@ -248,6 +248,7 @@ impl TextPlan {
             "plan of this run
   dimension         {}: {}{forced}
   method            {}: {}
+  formulas          {}
   tolerances        rtol {:e}, {}, at most {} steps{}
   trajectory        {rows}
   error estimate    {estimate}",
@@ -255,6 +256,7 @@ impl TextPlan {
             self.model.system.states().join(", "),
             self.method.name(),
             self.method.reason(),
+            used_compiling().in_words(),
             self.tolerances.rtol,
             atol_in_words(self.tolerances.atol, self.told_atol().is_array()),
             twinslip::error::count(self.max_steps),

@@ -16,7 +16,9 @@ use serde_json::Value;
 use twinslip::error::{Error, Result};
 use twinslip::field::Vector;
 use twinslip::friction::positive;
-use twinslip::integrate::{AnyField, AnyIntegrator, Choice, Control, MotionUnits, Tolerances};
+use twinslip::integrate::{
+    AnyField, AnyIntegrator, Choice, Control, MotionUnits, Tolerances, used_compiling,
+};
 use twinslip::number::Uncertain;
 use twinslip::number::polynomial::Crossing;
 use twinslip::orbit::{OrbitAccuracy, find_from};
@@ -150,6 +152,7 @@ impl TextSectionPlan {
             "plan of this return map
   dimension         {}
   method            {}: {}
+  formulas          {}
   tolerances        rtol {:e}, {}, at most {} steps{}
   section           {} {sense} through {}
   returns           {} after {} that are skipped; a run that does not return for {} ends
@@ -157,6 +160,7 @@ impl TextSectionPlan {
             self.start.len(),
             self.method.name(),
             self.method.reason(),
+            used_compiling().in_words(),
             self.tolerances.rtol,
             atol_in_words(self.tolerances.atol, self.told_atol().is_array()),
             twinslip::error::count(self.max_steps),
