@@ -9,7 +9,7 @@ use super::arc::Tracer;
 use super::continuation_point::{ContinuationPoint, TangentVector};
 use super::family::ParametrisedField;
 use super::gradients::{carried, test_function};
-use super::linear::Linear;
+use super::linear::{Free, Linear};
 use super::multipliers::eigenvalues_of;
 use super::periodic_schur::LogEigenvalue;
 use super::shooting_nodes::ShootingNodes;
@@ -181,37 +181,51 @@ impl<'a> Corrector<'a> {
         }
     }
 
-    /// The linearisation at a site, with the derivatives in the parameters.
-    pub(super) fn linear(&mut self, site: &ContinuationPoint) -> Option<Linear> {
-        self.linear_in(None, site)
+    /// The linearisation at a site, with the derivatives in these of the parameters that span the plane.
+    pub(super) fn linear(&mut self, site: &ContinuationPoint, free: &[usize]) -> Option<Linear> {
+        self.linear_in(None, site, free)
     }
 
     /// The same in the planes of an orbit nearby, if one is given.
-    fn linear_in(&mut self, planes: Option<&Linear>, site: &ContinuationPoint) -> Option<Linear> {
+    fn linear_in(
+        &mut self,
+        planes: Option<&Linear>,
+        site: &ContinuationPoint,
+        free: &[usize],
+    ) -> Option<Linear> {
         let (family, tracer) = (self.family, &mut self.tracer);
         let field = family.field(site.at);
+        let places = Free {
+            of_plane: free,
+            plane: family.plane(),
+        };
         let linear = match planes {
-            None => Linear::of(tracer, family, &field, &site.shooting),
-            Some(planes) => planes.beside(tracer, &field, &site.shooting, &family.plane()),
+            None => Linear::of(tracer, family, &field, &site.shooting, places),
+            Some(planes) => planes.beside(tracer, &field, &site.shooting, places),
         };
         let mut linear = linear.ok()?;
         drop(field);
         if !self.tracer.differentiates() {
-            self.difference(site, &mut linear)?;
+            self.difference(site, free, &mut linear)?;
         }
         Some(linear)
     }
 
     /// The derivatives in the parameters by central differences.
-    fn difference(&mut self, site: &ContinuationPoint, linear: &mut Linear) -> Option<()> {
+    fn difference(
+        &mut self,
+        site: &ContinuationPoint,
+        free: &[usize],
+        linear: &mut Linear,
+    ) -> Option<()> {
         /// In the coordinates of the parameters.
         const APART: f64 = 1e-5;
         let scale = self.family.scale(site.at);
         let arcs = Shared::make_mut(&mut linear.arcs);
         for arc in arcs.iter_mut() {
-            arc.parameters = Matrix::zeros(arc.end.len(), 2);
+            arc.parameters = Matrix::zeros(arc.end.len(), free.len());
         }
-        for i in 0..2 {
+        for (column, &i) in free.iter().enumerate() {
             let beside = |step: f64| {
                 let mut at = site.at;
                 at[i] += step;
@@ -223,7 +237,7 @@ impl<'a> Corrector<'a> {
                 let low = self.tracer.flow(&below, x, duration, None).ok()?;
                 let high = self.tracer.flow(&above, x, duration, None).ok()?;
                 let slope = (high - low) / (2.0 * APART * scale[i]);
-                arcs[k].parameters.set_column(i, &slope);
+                arcs[k].parameters.set_column(column, &slope);
             }
         }
         Some(())
@@ -325,7 +339,7 @@ impl<'a> Corrector<'a> {
                     .arriving(tracer, &field, normals, uncertain)
                     .ok()??;
             }
-            let linear = self.linear_in(planes, &site)?;
+            let linear = self.linear_in(planes, &site, free)?;
             let (closing, along) = linear.solutions(free, self.family.scale(site.at))?;
             let tested = conditions.iter().any(|one| test_function(one).is_some());
             let spectrum = tested.then(|| Spectrum::new(&linear));
@@ -424,7 +438,7 @@ impl<'a> Corrector<'a> {
         checked(conditions, self.family.dimension())?;
         site.shooting.checked(self.family.dimension())?;
         let looked = self
-            .linear(&site)
+            .linear(&site, free)
             .and_then(|linear| self.look_with(site, linear, free, conditions));
         looked.ok_or(Error::NotConverged {
             what: "the directions in which the periodic orbit can move",

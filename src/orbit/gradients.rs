@@ -2,7 +2,7 @@
 
 use super::continuation_point::{ContinuationPoint, TangentVector};
 use super::correct::{Condition, Corrector, Regular};
-use super::linear::Linear;
+use super::linear::{Free, Linear};
 use super::test_function::{Spectrum, TestFunction};
 
 /// The step by which test functions are differentiated.
@@ -97,7 +97,7 @@ impl Corrector<'_> {
         let beside = site.moved(direction, STEP);
         let field = self.family.field(beside.at);
         let moved = linear
-            .beside(&mut self.tracer, &field, &beside.shooting, &[])
+            .beside(&mut self.tracer, &field, &beside.shooting, Free::NONE)
             .ok()?;
         Some(Spectrum::change(linear, spectrum, &moved, STEP))
     }

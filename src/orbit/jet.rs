@@ -7,7 +7,7 @@
 use super::arc::Tracer;
 use super::continuation_point::ContinuationPoint;
 use super::family::ParametrisedField;
-use super::linear::{Linear, frame};
+use super::linear::{Free, Linear, frame};
 use super::shooting_nodes::ShootingNodes;
 use crate::field::{Matrix, Vector};
 use crate::integrate::{AnyField, MAX_STEPS, Taylor, Tolerances};
@@ -80,7 +80,8 @@ impl<'a> PoincareMaps<'a> {
             let mut tracer = Tracer::taylor(tolerance).ok()?;
             // In the planes of the jets.
             let frames = Shared::new(maps.frames.clone());
-            let linear = Linear::in_frames(&mut tracer, &maps.field, &site.shooting, &[], frames);
+            let linear =
+                Linear::in_frames(&mut tracer, &maps.field, &site.shooting, Free::NONE, frames);
             maps.linear = linear.ok()?.maps;
         }
         Some(maps)
@@ -258,7 +259,7 @@ pub fn finely_cut(
     let mut tracer = Tracer::taylor(FINE).ok()?;
     let mut shooting = site.shooting.clone();
     for _ in 0..SPLITS {
-        let linear = Linear::of(&mut tracer, family, &field, &shooting).ok()?;
+        let linear = Linear::of(&mut tracer, family, &field, &shooting, Free::NONE).ok()?;
         if linear.growth().all(|growth| growth < GROWTH) {
             break;
         }

@@ -21,6 +21,8 @@ use std::sync::Arc as Shared;
 pub(super) struct Linear {
     /// From every node to the next.
     pub arcs: Shared<Vec<Arc>>,
+    /// The parameters, of the two that span the plane, in which the arcs have derivatives.
+    free: Vec<usize>,
     /// What the arcs say of volumes.
     pub logs: Vec<ArcLogs>,
     /// At every node orthonormal columns, the first the plane's normal, the others the axes of coordinates in it.
@@ -31,6 +33,23 @@ pub(super) struct Linear {
     pub gaps: Vec<Vector>,
     inflow: Shared<Vec<Vector>>,
     slowness: Shared<Vec<f64>>,
+}
+
+/// The parameters in which arcs get derivatives.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Free<'a> {
+    /// Which of the two that span the plane.
+    pub of_plane: &'a [usize],
+    /// The places of both among all of the field's.
+    pub plane: [usize; 2],
+}
+
+impl Free<'_> {
+    /// None.
+    pub const NONE: Self = Free {
+        of_plane: &[],
+        plane: [0; 2],
+    };
 }
 
 /// [`Arc::volume`] and [`Arc::log_transverse`].
@@ -48,24 +67,19 @@ impl Linear {
         shooting: &ShootingNodes,
     ) -> Result<Self> {
         let frames = shooting.nodes.iter().map(|x| frame(&field.f(x))).collect();
-        Self::in_frames(tracer, field, shooting, &[], Shared::new(frames))
+        Self::in_frames(tracer, field, shooting, Free::NONE, Shared::new(frames))
     }
 
-    /// In the family's planes, with the derivatives in the parameters.
+    /// In the family's planes, with the derivatives in these parameters, if any.
     pub fn of(
         tracer: &mut Tracer,
         family: &dyn ParametrisedField,
         field: &AnyField<'_>,
         shooting: &ShootingNodes,
+        free: Free<'_>,
     ) -> Result<Self> {
         let frames = frames_of(family, field, shooting);
-        Self::in_frames(
-            tracer,
-            field,
-            shooting,
-            &family.plane(),
-            Shared::new(frames),
-        )
+        Self::in_frames(tracer, field, shooting, free, Shared::new(frames))
     }
 
     /// The same in the planes of another linearisation nearby, with derivatives in these parameters, if any.
@@ -74,7 +88,7 @@ impl Linear {
         tracer: &mut Tracer,
         field: &AnyField<'_>,
         shooting: &ShootingNodes,
-        free: &[usize],
+        free: Free<'_>,
     ) -> Result<Self> {
         Self::in_frames(tracer, field, shooting, free, Shared::clone(&self.frames))
     }
@@ -87,7 +101,8 @@ impl Linear {
         shooting: &ShootingNodes,
     ) -> Self {
         let frames = Shared::new(frames_of(family, field, shooting));
-        Self::assembled(field, shooting, Shared::clone(&self.arcs), frames)
+        let arcs = (Shared::clone(&self.arcs), &self.free[..]);
+        Self::assembled(field, shooting, arcs, frames)
     }
 
     /// A displacement of these nodes in other planes as one in these: moved along the flow, which changes no orbit. Their durations stay as they
@@ -112,20 +127,22 @@ impl Linear {
         tracer: &mut Tracer,
         field: &AnyField<'_>,
         shooting: &ShootingNodes,
-        free: &[usize],
+        free: Free<'_>,
         frames: Shared<Vec<Matrix>>,
     ) -> Result<Self> {
-        let mut arcs = tracer.arcs(field, free)?;
+        let places: Vec<usize> = free.of_plane.iter().map(|&i| free.plane[i]).collect();
+        let mut arcs = tracer.arcs(field, &places)?;
         let along = shooting.nodes.iter().zip(&shooting.durations);
         let all = along.map(|(x, &duration)| arcs.arc(x, duration));
         let all = all.collect::<Result<Vec<_>>>()?;
-        Ok(Self::assembled(field, shooting, Shared::new(all), frames))
+        let arcs = (Shared::new(all), free.of_plane);
+        Ok(Self::assembled(field, shooting, arcs, frames))
     }
 
     fn assembled(
         field: &AnyField<'_>,
         shooting: &ShootingNodes,
-        arcs: Shared<Vec<Arc>>,
+        (arcs, free): (Shared<Vec<Arc>>, &[usize]),
         frames: Shared<Vec<Matrix>>,
     ) -> Self {
         let count = arcs.len();
@@ -157,6 +174,7 @@ impl Linear {
         }
         Linear {
             arcs,
+            free: free.to_vec(),
             logs,
             frames,
             maps,
@@ -170,6 +188,7 @@ impl Linear {
     pub fn without_gaps(&self) -> Self {
         Linear {
             arcs: Shared::clone(&self.arcs),
+            free: self.free.clone(),
             logs: self.logs.clone(),
             frames: Shared::clone(&self.frames),
             maps: self.maps.clone(),
@@ -290,7 +309,7 @@ impl Linear {
 
     /// The displacements that close the gaps where some parameters are free too, and the directions in which the orbit can
     /// then still move: as many as there are free parameters, orthonormal. Regular at folds; `None` where there are more
-    /// directions than that, as at branch points.
+    /// directions than that, as at branch points, and where the arcs have no derivatives in one of these.
     ///
     /// `scale` are the derivatives of the parameters in their coordinates.
     pub fn solutions(
@@ -309,6 +328,8 @@ impl Linear {
         scale: [f64; 2],
     ) -> Option<(TangentVector, Vec<TangentVector>)> {
         let planar = self.dimension() - 1;
+        let column = |i: &usize| self.free.iter().position(|known| known == i);
+        let columns: Vec<usize> = free.iter().map(column).collect::<Option<_>>()?;
         let mut across = Vector::zeros(planar + 1);
         // The gaps, and what each of the free parameters adds to them.
         let right: Vec<_> = (0..self.frames.len())
@@ -316,8 +337,8 @@ impl Linear {
                 let mut right = Matrix::zeros(planar, 1 + free.len());
                 across.copy_from(&gaps[k]);
                 self.see(k, &mut across, right.column_mut(0).iter_mut());
-                for (j, &i) in free.iter().enumerate() {
-                    across.copy_from(&self.arcs[k].parameters.column(i));
+                for (j, (&i, &column)) in free.iter().zip(&columns).enumerate() {
+                    across.copy_from(&self.arcs[k].parameters.column(column));
                     across *= scale[i];
                     self.see(k, &mut across, right.column_mut(1 + j).iter_mut());
                 }
@@ -335,8 +356,8 @@ impl Linear {
             let u = reduced.extended(start, &combination)?;
             let (nodes, durations) = self.displacement(&u, |k, arrival| {
                 arrival.axpy(closing, &gaps[k], 1.0);
-                for &i in free {
-                    let pull = self.arcs[k].parameters.column(i);
+                for (&i, &column) in free.iter().zip(&columns) {
+                    let pull = self.arcs[k].parameters.column(column);
                     arrival.axpy(parameters[i] * scale[i], &pull, 1.0);
                 }
             });

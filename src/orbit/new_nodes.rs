@@ -59,7 +59,7 @@ impl OrbitCurve<'_, '_> {
             shooting,
             at: old.at,
         };
-        let mut linear = self.corrector.linear(&site)?;
+        let mut linear = self.corrector.linear(&site, &self.settings.free)?;
         for _ in 0..SPLITS {
             if linear.growth().all(|growth| growth < GROWTH) {
                 break;
@@ -67,7 +67,7 @@ impl OrbitCurve<'_, '_> {
             let parts = linear.parts(GROWTH);
             let tracer = &mut self.corrector.tracer;
             site.shooting = site.shooting.split(tracer, &field, &parts).ok()?;
-            linear = self.corrector.linear(&site)?;
+            linear = self.corrector.linear(&site, &self.settings.free)?;
         }
         drop(field);
         let scale = self.corrector.family.scale(site.at);
@@ -138,15 +138,15 @@ impl OrbitCurve<'_, '_> {
         let field = family.field(old.at);
         let mut moved = direction.nodes[most].clone();
         if later != 0.0 {
-            let free = family.plane();
-            let mut arcs = self.corrector.tracer.arcs(&field, &free).ok()?;
+            let (free, plane) = (&self.settings.free, family.plane());
+            let places: Vec<usize> = free.iter().map(|&i| plane[i]).collect();
+            let mut arcs = self.corrector.tracer.arcs(&field, &places).ok()?;
             let arc = arcs.arc(&old.shooting.nodes[most], later).ok()?;
             moved = &arc.tangent * moved;
             let scale = family.scale(old.at);
-            if arc.parameters.ncols() == scale.len() {
-                for (i, (scale, change)) in scale.iter().zip(direction.parameters).enumerate() {
-                    moved.axpy(scale * change, &arc.parameters.column(i), 1.0);
-                }
+            // None where the method makes none.
+            for (&i, column) in free.iter().zip(arc.parameters.column_iter()) {
+                moved.axpy(scale[i] * direction.parameters[i], &column, 1.0);
             }
         }
         let node = &new.nodes[next];

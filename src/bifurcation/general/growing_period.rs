@@ -12,7 +12,7 @@ use crate::bifurcation::Label;
 use crate::bifurcation::equilibria::generic::FieldEquilibria;
 use crate::bifurcation::orbits::{ARC, ROUGH, WORK};
 use crate::field::Vector;
-use crate::integrate::AnyField;
+use crate::integrate::{AnyField, AnyStep, Control};
 use crate::number::{Uncertain, eigenvalues};
 use crate::orbit::{Regular, ShootingNodes, Tracer, method_for};
 use nalgebra::Complex;
@@ -120,16 +120,20 @@ impl Periods {
         last.windows(2).all(stays).then_some(last)
     }
 
-    /// The limit of the coordinate at the end of the branch, whose last orbit this is; `None` where the period does not grow without bound
-    /// as far as can be told.
-    pub fn limit(&self, branch: &GeneralBranch<'_>, last: &Regular) -> Option<Limit> {
+    /// The limit of the coordinate at the end of the branch, whose last orbit passes by this saddle, if it does; `None` where the period does not
+    /// grow without bound as far as can be told.
+    pub fn limit<'s>(
+        &self,
+        branch: &GeneralBranch<'_>,
+        saddle: &dyn Fn() -> Option<&'s Saddle>,
+    ) -> Option<Limit> {
         let off = self.off();
         let near = |limit: Uncertain| {
             let way = self.0.iter().map(|[at, _]| (at - limit.value).abs());
             limit.uncertainty <= NEAR * way.fold(0.0, f64::max)
         };
         if let Some(at) = self.between_turns(off).filter(|limit| near(*limit))
-            && passed_saddle(branch, last).is_some_and(|saddle| saddle.is_focus())
+            && saddle().is_some_and(Saddle::is_focus)
         {
             return Some(Limit {
                 at,
@@ -140,7 +144,7 @@ impl Periods {
             let falls = |first: f64, second: f64| (rate * (second - first)).exp();
             extrapolated(self.apart(falls)?, falls, off).filter(|limit| near(*limit))
         };
-        let rates = passed_saddle(branch, last).map(|saddle| saddle.rates());
+        let rates = saddle().map(Saddle::rates);
         if let Some(at) = rates.into_iter().flatten().find_map(by_rate) {
             return Some(Limit {
                 at,
@@ -221,19 +225,19 @@ fn extrapolated(
 }
 
 /// The eigenvalues of the saddle by which an orbit passes.
-struct Saddle(Vec<Complex<f64>>);
-
-/// The saddle where an orbit is slowest; `None` where no equilibrium is there, or one that is no saddle.
-fn passed_saddle(branch: &GeneralBranch<'_>, orbit: &Regular) -> Option<Saddle> {
-    let field = branch.system.family.field(orbit.site.at);
-    let passage = Passage::of(&field, &orbit.site.shooting)?;
-    let saddle = passage.equilibrium(branch, orbit.site.at[FREE])?;
-    let found = eigenvalues(&field.jacobian(&saddle))?;
-    let both_signs = found.iter().any(|z| z.re > 0.0) && found.iter().any(|z| z.re < 0.0);
-    both_signs.then_some(Saddle(found))
-}
+pub(super) struct Saddle(Vec<Complex<f64>>);
 
 impl Saddle {
+    /// The saddle where an orbit is slowest; `None` where no equilibrium is there, or one that is no saddle.
+    pub fn passed(branch: &GeneralBranch<'_>, orbit: &Regular) -> Option<Self> {
+        let field = branch.system.family.field(orbit.site.at);
+        let passage = Passage::of(&field, &orbit.site.shooting)?;
+        let saddle = passage.equilibrium(branch, orbit.site.at[FREE])?;
+        let found = eigenvalues(&field.jacobian(&saddle))?;
+        let both_signs = found.iter().any(|z| z.re > 0.0) && found.iter().any(|z| z.re < 0.0);
+        both_signs.then_some(Saddle(found))
+    }
+
     /// The rates at which the parameter may tend to its limit: the least absolute values of the real parts on either side of the axis, the lesser one first.
     /// It is that one in the end; the other one before that, where the orbit contracts much on its way around; half of them where the orbit passes
     /// the saddle twice in a period.
@@ -270,10 +274,18 @@ impl Passage {
         const PLACES: usize = 16;
         let method = method_for(field, orbit);
         let mut tracer = Tracer::for_orbit(method, ROUGH, (ARC, WORK)).ok()?;
-        let mut places = orbit.nodes.clone();
-        for i in 1..PLACES {
-            let part = i as f64 / PLACES as f64;
-            places.extend(orbit.shifted(&mut tracer, field, part).ok()?.nodes);
+        let mut places = Vec::with_capacity(PLACES * orbit.nodes.len());
+        for (node, &duration) in orbit.nodes.iter().zip(&orbit.durations) {
+            let mut times = (0..PLACES)
+                .map(|i| i as f64 / PLACES as f64 * duration)
+                .peekable();
+            let mut see = |step: &AnyStep<'_>| {
+                while let Some(time) = times.next_if(|&time| time < step.t1) {
+                    places.push(step.dense(time));
+                }
+                Ok(Control::Continue)
+            };
+            tracer.flow(field, node, duration, Some(&mut see)).ok()?;
         }
         let mut least = places[0].clone();
         let mut most = least.clone();

@@ -1,6 +1,6 @@
 //! One branch of periodic orbits: what is on it, and where it ends.
 
-use super::growing_period::{Folds, Limit, Periods};
+use super::growing_period::{Folds, Limit, Periods, Saddle};
 use super::multipliers_together::{Outside, is_real};
 use super::orbit_point::{special_orbit, sum_of_pair};
 use super::orbits::OrbitBranches;
@@ -15,6 +15,7 @@ use crate::number::Uncertain;
 use crate::orbit::{
     ContinuationPoint, DirectedPoint, Palc, Regular, TestFunction, WatchedFunction,
 };
+use std::cell::OnceCell;
 use std::ops::ControlFlow::{self, Break, Continue};
 
 /// The most steps on a branch.
@@ -129,8 +130,11 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         // What is left of the way may be less than the last orbits are off by.
         let mut periods = self.periods.clone();
         let mut left_out = 0;
+        let branch = self.set.branch;
+        let passed = OnceCell::new();
+        let saddle = || passed.get_or_init(|| Saddle::passed(branch, last)).as_ref();
         let limit = loop {
-            let limit = periods.limit(self.set.branch, last);
+            let limit = periods.limit(branch, &saddle);
             if limit.is_some() || (left_out >= LEFT_OUT && !periods.stay()) {
                 break limit?;
             }
