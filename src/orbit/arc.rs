@@ -125,6 +125,12 @@ fn log_determinant(mut m: Matrix) -> f64 {
 /// What makes arcs.
 pub struct Tracer {
     method: AnyIntegrator,
+    /// The same method with a coarse tolerance, while iterations are far from their end.
+    coarse: Option<AnyIntegrator>,
+    is_coarse: bool,
+    choice: Choice,
+    tolerances: Tolerances,
+    max_steps: usize,
     /// What a step may err by, in units of 1 + |y|.
     step_error: f64,
     bound: WorkBound,
@@ -150,6 +156,8 @@ impl WorkBound {
     }
 }
 
+/// The coarse tolerance of flows and their derivatives while an iteration is far from its end.
+const COARSE: f64 = 1e-8;
 /// Rounding in a step, relative: of the sums, of the constants and of the change to logarithms.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
@@ -166,6 +174,11 @@ impl Tracer {
         };
         Ok(Tracer {
             method: AnyIntegrator::new(choice, tolerances, max_steps)?,
+            coarse: None,
+            is_coarse: false,
+            choice,
+            tolerances,
+            max_steps,
             step_error: tolerances.rtol + tolerances.atol + ROUNDING,
             bound: WorkBound {
                 work: Work::default(),
@@ -225,6 +238,20 @@ impl Tracer {
         self
     }
 
+    /// From now on with a coarse tolerance, or again with its own.
+    pub(super) fn coarsely(&mut self, yes: bool) {
+        let rtol = COARSE.max(self.tolerances.rtol);
+        if yes && self.coarse.is_none() {
+            let tolerances = Tolerances {
+                rtol,
+                atol: rtol,
+                ..self.tolerances
+            };
+            self.coarse = AnyIntegrator::new(self.choice, tolerances, self.max_steps).ok();
+        }
+        self.is_coarse = yes;
+    }
+
     /// The bound on all steps, where it is used up.
     pub(crate) fn used_up(&self) -> Option<usize> {
         self.bound.used_up()
@@ -253,8 +280,12 @@ impl Tracer {
         field: &'f AnyField<'_>,
         free: &'f [usize],
     ) -> Result<Arcs<'f>> {
+        let method = match &mut self.coarse {
+            Some(coarse) if self.is_coarse => coarse,
+            _ => &mut self.method,
+        };
         Ok(Arcs {
-            made: self.method.arcs(field, free)?,
+            made: method.arcs(field, free)?,
             step_error: self.step_error,
             bound: &mut self.bound,
         })
@@ -311,8 +342,12 @@ impl Tracer {
         observer: Option<AnyObserver<'_>>,
     ) -> Result<Vector> {
         self.bound.allowed(duration)?;
-        let end = self.method.flow(field, (0.0, duration), start, observer);
-        self.bound.work += self.method.work();
+        let method = match &mut self.coarse {
+            Some(coarse) if self.is_coarse => coarse,
+            _ => &mut self.method,
+        };
+        let end = method.flow(field, (0.0, duration), start, observer);
+        self.bound.work += method.work();
         end
     }
 }

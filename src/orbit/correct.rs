@@ -116,6 +116,8 @@ const NEAR: f64 = 1.0;
 const STRETCH: f64 = 0.1;
 /// A correction of the time to the next plane that is a longer way there, in parts of the extents, is more than its slope says.
 const ARRIVED: f64 = 1e-4;
+/// Corrections larger than this are made with coarse flows.
+const FAR: f64 = 1e-4;
 /// A correction that shrinks by less than this asks for new gradients.
 const SLOW: f64 = 0.02;
 
@@ -328,20 +330,16 @@ impl<'a> Corrector<'a> {
         let mut gradients: Option<Vec<TangentVector>> = None;
         let mut ways = Vec::new();
         let (mut first, mut last) = (f64::INFINITY, f64::INFINITY);
+        let tested = conditions.iter().any(|one| test_function(one).is_some());
+        // What the next correction will be.
+        let mut expected = f64::INFINITY;
         for iterations in 1..=goal.iterations {
-            if let Some(planes) = planes {
-                let field = self.family.field(site.at);
-                let normals = |k| planes.normal(k);
-                let uncertain = |k: usize| ways.get(k).is_none_or(|&way| way > ARRIVED);
-                let tracer = &mut self.tracer;
-                site.shooting = site
-                    .shooting
-                    .arriving(tracer, &field, normals, uncertain)
-                    .ok()??;
-            }
-            let linear = self.linear_in(planes, &site, free)?;
+            let coarse = !tested && expected > FAR;
+            self.tracer.coarsely(coarse);
+            let made = self.linear_at(planes, &mut site, &ways, free);
+            self.tracer.coarsely(false);
+            let linear = made?;
             let (closing, along) = linear.solutions(free, self.family.scale(site.at))?;
-            let tested = conditions.iter().any(|one| test_function(one).is_some());
             let spectrum = tested.then(|| Spectrum::new(&linear));
             let (known, by_closing) = match &spectrum {
                 None => (Vec::new(), Vec::new()),
@@ -376,7 +374,9 @@ impl<'a> Corrector<'a> {
             // What a step of quadratic convergence leaves, by how the last one went.
             let left = size * (size / last).powi(2);
             let left_is_small = iterations == 1 || size < NOISE || left < goal.done.powi(2);
-            let done = (size < goal.done && left_is_small) || (size < NOISE && size > 0.3 * last);
+            let small = (size < goal.done && left_is_small) || (size < NOISE && size > 0.3 * last);
+            let done = small && !coarse;
+            expected = if iterations == 1 { size.powi(2) } else { left };
             ways = linear.ways(&site.shooting, &correction.durations);
             site = site.moved(&correction, 1.0);
             if site.shooting.durations.iter().any(|&t| t <= 0.0) {
@@ -416,6 +416,28 @@ impl<'a> Corrector<'a> {
             last = size;
         }
         None
+    }
+
+    /// The linearisation at a site in the planes of an orbit nearby, if one is given: then with the durations until the flow arrives there, but for the
+    /// arcs whose last corrections were short ways.
+    fn linear_at(
+        &mut self,
+        planes: Option<&Linear>,
+        site: &mut ContinuationPoint,
+        ways: &[f64],
+        free: &[usize],
+    ) -> Option<Linear> {
+        if let Some(planes) = planes {
+            let field = self.family.field(site.at);
+            let normals = |k| planes.normal(k);
+            let uncertain = |k: usize| ways.get(k).is_none_or(|&way| way > ARRIVED);
+            let tracer = &mut self.tracer;
+            let shooting = site.shooting.clone();
+            site.shooting = shooting
+                .arriving(tracer, &field, normals, uncertain)
+                .ok()??;
+        }
+        self.linear_in(planes, site, free)
     }
 
     /// A displacement of an orbit's nodes in their planes: moved along the flow.
