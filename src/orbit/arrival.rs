@@ -16,13 +16,15 @@ struct Target<'a> {
     normal: Vector,
     extents: &'a Vector,
     period: f64,
+    /// The steps of the arc before.
+    steps: usize,
 }
 
 /// An arc comes to a plane within so many times what it took before; and as near to the node, in parts of the extents.
 const LATE: f64 = 8.0;
 const NEAR: f64 = 0.3;
-/// A flow that takes so many times the steps that it took until it was expected, and so many more, has left the orbit for good.
-const MORE: (usize, usize) = (10, 1000);
+/// A flow that takes so many times the steps of the arc before, and so many more, has left the orbit for good.
+const MORE: (usize, usize) = (10, 50);
 
 /// What becomes of the flow from a node.
 enum Arrival {
@@ -52,7 +54,7 @@ impl Target<'_> {
         start: &Vector,
         expected: f64,
     ) -> Result<Arrival> {
-        let (mut lost, mut steps, mut expected_steps) = (false, 0, 0);
+        let (mut lost, mut steps) = (false, 0);
         let mut found: Option<f64> = None;
         let off = |time: f64| (time / expected).ln().abs();
         let mut observer = |step: &AnyStep<'_>| {
@@ -62,10 +64,7 @@ impl Target<'_> {
                 return Ok(Control::Stop);
             }
             steps += 1;
-            if step.t0.abs() < expected.abs() {
-                expected_steps = steps;
-            }
-            lost = steps > MORE.0 * expected_steps + MORE.1;
+            lost = steps > MORE.0 * self.steps + MORE.1;
             if lost {
                 return Ok(Control::Stop);
             }
@@ -118,7 +117,7 @@ fn zero(mut a: (f64, f64), mut b: (f64, f64), f: impl Fn(f64) -> f64) -> f64 {
 
 impl ShootingNodes {
     /// The same nodes with the times that the flow takes from each to the plane of the next, where it comes there, on the arcs for which
-    /// `uncertain` says so; `None` where it leaves the orbit for good.
+    /// `uncertain` says so; `None` where it leaves the orbit for good. By index, `normals` of the planes and `steps` that the arcs took before.
     ///
     /// # Errors
     /// Those of the flow.
@@ -127,6 +126,7 @@ impl ShootingNodes {
         tracer: &mut Tracer,
         field: &AnyField<'_>,
         normals: impl Fn(usize) -> Vector,
+        steps: impl Fn(usize) -> usize,
         uncertain: impl Fn(usize) -> bool,
     ) -> Result<Option<Self>> {
         let (extents, period) = (extents(self.nodes.iter()), self.period().abs());
@@ -138,6 +138,7 @@ impl ShootingNodes {
                 normal: normals(next),
                 extents: &extents,
                 period,
+                steps: steps(k),
             };
             match target.time_from(tracer, field, &self.nodes[k], self.durations[k])? {
                 Arrival::After(time) => self.durations[k] = time,

@@ -430,11 +430,12 @@ impl<'a> Corrector<'a> {
         if let Some(planes) = planes {
             let field = self.family.field(site.at);
             let normals = |k| planes.normal(k);
+            let steps = |k: usize| planes.arcs[k].steps;
             let uncertain = |k: usize| ways.get(k).is_none_or(|&way| way > ARRIVED);
             let tracer = &mut self.tracer;
             let shooting = site.shooting.clone();
             site.shooting = shooting
-                .arriving(tracer, &field, normals, uncertain)
+                .arriving(tracer, &field, normals, steps, uncertain)
                 .ok()??;
         }
         self.linear_in(planes, site, free)
