@@ -195,6 +195,43 @@ fn every_command_has_a_manual_page() {
 }
 
 #[test]
+fn short_help_is_an_example_and_the_options_most_used() {
+    for command in [
+        "law",
+        "integrate",
+        "equilibria",
+        "orbit",
+        "section",
+        "branch",
+        "locus",
+        "sweep",
+        "fit",
+    ] {
+        let [short, all] = ["-h", "--help"].map(|flag| twinslip(&format!("{command} {flag}")));
+        assert_eq!((short.code, all.code), (0, 0));
+        let lines: Vec<&str> = short.out.lines().collect();
+        assert!(lines.len() <= 16, "{}", short.out);
+        assert!(lines.iter().all(|line| line.chars().count() <= 140));
+        let example = lines[2].trim();
+        assert!(example.starts_with(&format!("twinslip {command} ")) && all.out.contains(example));
+        let options = lines.iter().filter(|line| line.starts_with("  --"));
+        let options: Vec<&str> = options
+            .filter_map(|line| line.split_whitespace().next())
+            .collect();
+        assert!(options.len() >= 7, "{}", short.out);
+        for option in options {
+            assert!(
+                all.out.contains(&format!("{option} ")),
+                "{command} {option}"
+            );
+        }
+        assert!(short.out.contains(&format!("`twinslip {command} --help`")));
+        // Not where -h is a value, nor where all is asked for.
+        assert_eq!(twinslip(&format!("{command} -h --help")).out, all.out);
+    }
+}
+
+#[test]
 fn help_shows_an_example_that_runs() {
     for command in [
         "law",

@@ -28,6 +28,7 @@ mod rows;
 mod run;
 mod section;
 mod shell;
+mod short_help;
 mod slab;
 mod special;
 mod stream;
@@ -179,8 +180,14 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         .iter()
         .map(|word| word.to_string_lossy())
         .collect();
+    let program = program();
+    if let Some(help) = short_help::asked_for(&program, &words) {
+        // A closed standard output is nobody's.
+        let _ = write!(std::io::stdout(), "{help}");
+        return ExitCode::SUCCESS;
+    }
     let implied = scene::implied(&words).map(OsString::from);
-    let parsed = program()
+    let parsed = program
         .try_get_matches_from(arguments.iter().cloned().chain(implied))
         .and_then(|matches| CommandLine::from_arg_matches(&matches));
     let line = match parsed {
