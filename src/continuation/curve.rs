@@ -109,6 +109,11 @@ pub trait SolutionCurve {
     /// The value of what is watched, of order one. NaN where it is undefined: no sign change then is seen.
     fn value(&self, at: &Self::Point, watch: Watched<Self>) -> f64;
 
+    /// Whether the slope of what is watched takes much work.
+    fn is_costly(&self, _: Watched<Self>) -> bool {
+        false
+    }
+
     /// The slopes along the curve of all that is watched, where there are such, on a step of this length.
     fn slopes(
         &mut self,

@@ -8,6 +8,14 @@ use super::{CurveStep, SolutionCurve, Watched};
 /// A value with its slope along the curve, where there is one.
 pub(super) type Value = (f64, Option<f64>);
 
+/// The values of all that is watched at a point.
+#[derive(Clone)]
+pub(super) struct Known {
+    values: Vec<Value>,
+    /// Whether they have all slopes, and not the cheap ones alone.
+    is_whole: bool,
+}
+
 /// A place on a step: its distance, the point, and what is known there.
 #[derive(Clone)]
 pub(super) struct Sample<P, V> {
@@ -29,6 +37,9 @@ const LOOKS: usize = 3;
 const DIP: f64 = 0.25;
 /// So is a step whose cubic turns by more than this part of them.
 const BENT: f64 = 0.6;
+/// A function that is costly to differentiate and changes by less than this part of it, on a step and by its slope where that is known, has no
+/// two zeros there.
+const CALM: f64 = 0.2;
 /// Between smaller values it may be noise that dips.
 const NOISE: f64 = 1e-14;
 
@@ -36,19 +47,33 @@ const NOISE: f64 = 1e-14;
 pub(super) fn sign_changes<C: SolutionCurve>(
     curve: &mut C,
     step: &CurveStep<C::Point>,
-    known: Option<Vec<Value>>,
+    known: Option<Known>,
     watches: &[Watched<C>],
-) -> (Vec<Bracket<C>>, Vec<Value>) {
+) -> (Vec<Bracket<C>>, Known) {
     let mut look = Look {
         curve,
         step,
         watches,
         found: Vec::new(),
     };
-    let start = look.sample(0.0, step.from.clone(), known);
-    let end = look.sample(step.length, step.to.clone(), None);
-    look.between(&start, &end, 0);
-    (look.found, end.value)
+    let mut start = known.unwrap_or_else(|| look.known(&step.from));
+    let mut end = look.known(&step.to);
+    if !look.is_calm(&start, &end) {
+        look.complete(&mut start, &step.from);
+        look.complete(&mut end, &step.to);
+    }
+    let start = Sample {
+        at: 0.0,
+        point: step.from.clone(),
+        value: start.values,
+    };
+    let at_end = Sample {
+        at: step.length,
+        point: step.to.clone(),
+        value: end.values.clone(),
+    };
+    look.between(&start, &at_end, 0);
+    (look.found, end)
 }
 
 struct Look<'a, C: SolutionCurve> {
@@ -59,18 +84,62 @@ struct Look<'a, C: SolutionCurve> {
 }
 
 impl<C: SolutionCurve> Look<'_, C> {
-    fn sample(
-        &mut self,
-        at: f64,
-        point: C::Point,
-        known: Option<Vec<Value>>,
-    ) -> Sample<C::Point, Vec<Value>> {
-        let value = known.unwrap_or_else(|| {
-            let slopes = self.curve.slopes(&point, self.watches, self.step.length);
-            let values = self.watches.iter().map(|&w| self.curve.value(&point, w));
-            values.zip(slopes).collect()
-        });
-        Sample { at, point, value }
+    /// The values at a point, with those slopes that are cheap.
+    fn known(&mut self, point: &C::Point) -> Known {
+        let watches = self.watches.iter().copied();
+        let cheap: Vec<_> = watches.filter(|&w| !self.curve.is_costly(w)).collect();
+        let mut slopes = self
+            .curve
+            .slopes(point, &cheap, self.step.length)
+            .into_iter();
+        let value = |&watch: &Watched<C>| {
+            let is_costly = self.curve.is_costly(watch);
+            let slope = if is_costly {
+                None
+            } else {
+                slopes.next().flatten()
+            };
+            (self.curve.value(point, watch), slope)
+        };
+        Known {
+            values: self.watches.iter().map(value).collect(),
+            is_whole: cheap.len() == self.watches.len(),
+        }
+    }
+
+    /// With all slopes.
+    fn complete(&mut self, known: &mut Known, point: &C::Point) {
+        if known.is_whole {
+            return;
+        }
+        let slopes = self.curve.slopes(point, self.watches, self.step.length);
+        for ((_, slope), found) in known.values.iter_mut().zip(slopes) {
+            *slope = found;
+        }
+        known.is_whole = true;
+    }
+
+    /// Whether no function that is costly to differentiate can have two zeros on the step, as little as they change.
+    fn is_calm(&self, start: &Known, end: &Known) -> bool {
+        let values = start.values.iter().zip(&end.values);
+        let mut costly = values
+            .zip(self.watches)
+            .filter(|(_, w)| self.curve.is_costly(**w));
+        costly.all(|((&(p, slope), &(q, _)), _)| {
+            let allowed = CALM * p.abs().min(q.abs());
+            let by_slope = slope.map_or(0.0, |slope| slope * self.step.length);
+            (q - p).abs() < allowed && by_slope.abs() < allowed
+        })
+    }
+
+    fn sample(&mut self, at: f64, point: C::Point) -> Sample<C::Point, Vec<Value>> {
+        let mut known = self.known(&point);
+        self.complete(&mut known, &point);
+        Sample {
+            at,
+            point,
+            value: known.values,
+        }
     }
 
     fn between(
@@ -95,7 +164,7 @@ impl<C: SolutionCurve> Look<'_, C> {
         if let Some(at) = at
             && let Ok(point) = self.curve.between(&self.step.from, known, at)
         {
-            let middle = self.sample(at, point, None);
+            let middle = self.sample(at, point);
             self.between(a, &middle, depth + 1);
             self.between(&middle, b, depth + 1);
             return;

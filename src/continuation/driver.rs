@@ -1,6 +1,6 @@
 //! The steps along a curve, their control, and what is met on the way.
 
-use super::detect::{Value, sign_changes};
+use super::detect::{Known, sign_changes};
 use super::land::landed;
 use super::{CurveStep, SolutionCurve, Stop, Watched};
 use crate::error::Result;
@@ -47,7 +47,7 @@ pub struct Continuation<C: SolutionCurve> {
     /// Whether the point has been described anew where it stands.
     renewed: bool,
     /// What is watched there, if it is known.
-    known: Option<Vec<Value>>,
+    known: Option<Known>,
     /// The way so far, and the last steps' lengths.
     travelled: f64,
     lengths: VecDeque<f64>,

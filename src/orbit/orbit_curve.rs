@@ -335,6 +335,10 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
         watches.iter().map(slope).collect()
     }
 
+    fn is_costly(&self, watch: WatchedFunction) -> bool {
+        matches!(watch, WatchedFunction::TestFunction(_))
+    }
+
     /// Along a curve of bifurcations a turn has no condition of its own.
     fn solves(&self, watch: WatchedFunction) -> bool {
         watch != WatchedFunction::Turn(STIFFNESS) || self.settings.test_function.is_none()
