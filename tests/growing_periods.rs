@@ -100,6 +100,15 @@ z = 0.0
     ends_at(&asked, "mu", "homoclinic", 1.606_203_845_707_1, 1e-7);
 }
 
+/// Symmetric orbits that wind about two saddle-foci in turn. Where one of them is connected with the other is known by bisection of the side to which
+/// the stable manifold leaves, back in time (SciPy's DOP853, 1e-12). Beside a turn of the branch the last orbits seem to tend to another value.
+#[test]
+fn a_branch_that_may_turn_once_more_has_not_come_to_its_limit() {
+    let asked =
+        "--system tests/data/oscillators/torus-circuit.toml --along nu --from -0.9 --to -0.4";
+    ends_at(asked, "nu", "homoclinic", -0.797_519_830_65, 5e-3);
+}
+
 /// Hindmarsh and Rose's branch from the second Hopf point goes to and fro, and every turn of it makes the orbit two spikes longer beside another
 /// orbit. The folds are those of AUTO-07p (NTST = 400, EPSL = 1e-8, DSMAX = 0.02), which with a step of 0.05 leaves some of them out.
 #[test]

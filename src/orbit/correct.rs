@@ -116,8 +116,9 @@ const NEAR: f64 = 1.0;
 const STRETCH: f64 = 0.1;
 /// A correction of the time to the next plane that is a longer way there, in parts of the extents, is more than its slope says.
 const ARRIVED: f64 = 1e-4;
-/// Corrections larger than this are made with coarse flows.
+/// Corrections larger than this are made with coarse flows, of orbits that are larger than this.
 const FAR: f64 = 1e-4;
+const LARGE: f64 = 0.1;
 /// A correction that shrinks by less than this asks for new gradients.
 const SLOW: f64 = 0.02;
 
@@ -331,10 +332,11 @@ impl<'a> Corrector<'a> {
         let mut ways = Vec::new();
         let (mut first, mut last) = (f64::INFINITY, f64::INFINITY);
         let tested = conditions.iter().any(|one| test_function(one).is_some());
+        let is_large = planes.is_some() && site.shooting.extent() > LARGE;
         // What the next correction will be.
         let mut expected = f64::INFINITY;
         for iterations in 1..=goal.iterations {
-            let coarse = !tested && expected > FAR;
+            let coarse = !tested && expected > FAR && is_large;
             self.tracer.coarsely(coarse);
             let made = self.linear_at(planes, &mut site, &ways, free);
             self.tracer.coarsely(false);

@@ -21,8 +21,12 @@ use std::ops::ControlFlow::Continue;
 /// Orbits that are looked at: the last one, and others before it, from each of which to the next what is left of the way falls by so much.
 const LAST: usize = 3;
 const APART: f64 = 1.3;
-/// The way to the limit is at most this part of the branch's.
+/// The way to the limit is at most this part of the branch's; between two turns it is known to be there.
 const NEAR: f64 = 1e-2;
+const NEAR_TURNS: f64 = 0.06;
+/// Beside a saddle-focus the parameter turns each time that the period has grown by half a turn, of an orbit that passes it twice in a period by a whole one:
+/// after this many radians without it does not.
+const ONCE_AROUND: f64 = 3.0 * std::f64::consts::PI;
 /// Two pairs of orbits agree on the limit to this part of the way that the first pair sees before it.
 const AGREE: f64 = 0.2;
 /// An equilibrium that an orbit passes is nearer than this to where it is slowest, in parts of the extent of the orbit.
@@ -128,17 +132,25 @@ impl Periods {
         saddle: &dyn Fn() -> Option<&'s Saddle>,
     ) -> Option<Limit> {
         let off = self.off();
-        let near = |limit: Uncertain| {
+        let within = |limit: Uncertain, part: f64| {
             let way = self.0.iter().map(|[at, _]| (at - limit.value).abs());
-            limit.uncertainty <= NEAR * way.fold(0.0, f64::max)
+            limit.uncertainty <= part * way.fold(0.0, f64::max)
         };
-        if let Some(at) = self.between_turns(off).filter(|limit| near(*limit))
-            && saddle().is_some_and(Saddle::is_focus)
+        let near = |limit: Uncertain| within(limit, NEAR);
+        let focus = saddle().and_then(Saddle::turns);
+        if let Some(at) = self
+            .between_turns(off)
+            .filter(|limit| within(*limit, NEAR_TURNS))
+            && focus.is_some()
         {
             return Some(Limit {
                 at,
                 is_saddle_node: false,
             });
+        }
+        // It may turn once more.
+        if focus.is_some_and(|turns| self.time_since_turn() < ONCE_AROUND / turns) {
+            return None;
         }
         let by_rate = |rate: f64| {
             let falls = |first: f64, second: f64| (rate * (second - first)).exp();
@@ -158,6 +170,14 @@ impl Periods {
             at: fold,
             is_saddle_node: true,
         })
+    }
+
+    /// By how much the period has grown since the coordinate turned for the last time.
+    fn time_since_turn(&self) -> f64 {
+        let turned =
+            |three: &[[f64; 2]]| (three[1][0] - three[0][0]) * (three[2][0] - three[1][0]) < 0.0;
+        let turn = self.0.windows(3).rposition(turned).map_or(0, |at| at + 1);
+        self.0.last().map_or(0.0, |last| last[1] - self.0[turn][1])
     }
 
     /// The limit of a coordinate that goes to and fro, ever less, as the period grows: between the last two turns, as the ways between turns
@@ -251,13 +271,15 @@ impl Saddle {
         [least, other, 0.5 * least, 0.5 * other]
     }
 
-    /// Whether on either side of the axis the eigenvalues that are nearest to it are complex.
-    fn is_focus(&self) -> bool {
-        [1.0, -1.0].iter().any(|side| {
+    /// The radians in a unit of time at which the orbit turns where on either side of the axis the eigenvalues that are nearest to it are complex.
+    fn turns(&self) -> Option<f64> {
+        let nearest = |side: f64| {
             let own = self.0.iter().filter(|z| z.re * side > 0.0);
-            let nearest = own.min_by(|a, b| a.re.abs().total_cmp(&b.re.abs()));
-            nearest.is_some_and(|z| z.im != 0.0)
-        })
+            own.min_by(|a, b| a.re.abs().total_cmp(&b.re.abs()))
+        };
+        let both = [1.0, -1.0].into_iter().filter_map(nearest);
+        let turns = both.map(|z| z.im.abs()).filter(|&turns| turns > 0.0);
+        turns.reduce(f64::min)
     }
 }
 
