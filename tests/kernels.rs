@@ -4,6 +4,7 @@ use crate::command::twinslip;
 use crate::common::data;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use twinslip::expression::{Binary, Builder, Expressions, Function};
 use twinslip::integrate::used_vectors;
 use twinslip::internals::{both_ways, columns_both_ways};
@@ -116,7 +117,7 @@ fn random_formulas_have_the_same_series_compiled() {
     for seed in 0..1500 {
         let mut random = Random(seed);
         let variables = 1 + random.below(4);
-        let rates = drawn(&mut random, variables);
+        let rates = Arc::new(drawn(&mut random, variables));
         let state: Vec<f64> = (0..variables)
             .map(|_| 2.0 * random.number() - 0.5)
             .collect();

@@ -361,7 +361,7 @@ impl<'a, const N: usize> TextField<'a, N> {
     fn recorded(&self) -> RecordedExpressions<'_, N> {
         RecordedExpressions {
             rates: &self.system.rates,
-            slip_rates: self.system.slip_rates.as_deref(),
+            slip_rates: self.system.slip_rates.as_ref(),
             parameters: &self.system.parameters,
         }
     }

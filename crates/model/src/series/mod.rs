@@ -21,6 +21,7 @@ mod columns;
 mod compiled;
 mod compiling;
 mod composition;
+mod constants;
 mod cubic;
 pub(crate) mod element;
 mod equations;

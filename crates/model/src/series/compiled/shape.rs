@@ -102,6 +102,21 @@ impl Shape {
     }
 }
 
+impl Shape {
+    /// Whether it is that of these recurrences too, which differ from its own at most in their constants.
+    pub fn holds_for<T: Element>(&self, later: &[PlacedLater<T>]) -> bool {
+        let mut all = self.steps.iter().zip(later);
+        all.all(|(step, later)| match (step, later) {
+            (Step::Sum { terms, .. }, PlacedLater::Sum(sum)) => {
+                let mut both = terms.iter().zip(&sum.terms);
+                both.all(|(known, term)| *known == SumTerm::of(term))
+            }
+            (Step::Recurrence(known), PlacedLater::Other(one)) => *known == Recurrence::of(one),
+            _ => false,
+        })
+    }
+}
+
 impl Step {
     fn of<T: Element>(later: &PlacedLater<T>) -> Self {
         match later {
