@@ -58,7 +58,8 @@ impl<T: Element> ProgramRows<T> {
     /// With room for these; `any` is any number.
     pub fn new(program: &Program, room: usize, any: T) -> Self {
         let first = program.instructions().iter();
-        let later = program.later.all.iter();
+        // None where there is room for the first coefficients alone.
+        let later = program.later.all.iter().filter(|_| room > 1);
         let mut later: Vec<_> = later
             .map(|one| PlacedLater::new(one, program, room, any))
             .collect();
