@@ -1,0 +1,168 @@
+//! Solutions that go over to other values of the parameters are those that are made at these values, bit by bit: whatever a value decides,
+//! such as that a product is 0, that a power is a product, or that two interfaces are alike.
+
+use crate::kernels::{Random, drawn};
+use rayon::prelude::*;
+use std::ops::Range;
+use twinslip::expression::{Binary, Builder, Expressions};
+use twinslip::field::VectorField;
+use twinslip::model::TextSystem;
+use twinslip::number::DoubleDouble;
+use twinslip::series::{Accuracy, Expansion, REFERENCE_ORDER, Solution};
+
+const VARIABLES: usize = 4;
+const PARAMETERS: usize = 3;
+/// Values that formulas are followed at one after the other.
+const VALUES: usize = 12;
+const ORDER: usize = 12;
+/// More steps than after which a formula is compiled.
+const MANY: usize = 600;
+
+/// Two parts with one formula, each in a variable of its own and in one that both share, and each with one more parameter of its own: they are alike
+/// where these two are the same.
+fn twins(random: &mut Random) -> Expressions {
+    let part = drawn(random, 2);
+    let mut builder = Builder::default();
+    let x = [0, 1, 2].map(|i| builder.variable(i).expect("few"));
+    let p = [0, 1, 2].map(|q| builder.parameter(q).expect("few"));
+    let mut rates = Vec::new();
+    for own in [1, 2] {
+        let made = builder.insert(&part, &[x[own], x[0]], &[p[0], p[own], p[own]]);
+        rates.push(made.expect("few")[0]);
+    }
+    let shared = builder.binary(Binary::Sum, rates[0], rates[1]);
+    builder.complete(vec![shared.expect("few"), rates[0], rates[1]])
+}
+
+/// Values of the parameters, most of them like any others.
+fn values(random: &mut Random) -> Vec<f64> {
+    let mut all: Vec<f64> = (0..PARAMETERS)
+        .map(|_| {
+            let special = [0.0, 1.0, -1.0, 2.0, 3.0, 0.5, 1.5, -2.0];
+            match random.below(3) {
+                0 => random.of(&special),
+                _ => 2.0 * random.number() - 0.5,
+            }
+        })
+        .collect();
+    if random.below(3) == 0 {
+        all[2] = all[1];
+    }
+    all
+}
+
+fn put(into: &mut Vec<u64>, numbers: impl IntoIterator<Item = f64>) {
+    // All that are no numbers are the same.
+    let bits = |x: f64| if x.is_nan() { f64::NAN } else { x }.to_bits();
+    into.extend(numbers.into_iter().map(bits));
+}
+
+/// Some steps, and all that is known of them.
+fn follow<const N: usize>(
+    solution: &mut dyn Solution<N>,
+    (start, order): (&[f64; N], usize),
+    into: &mut Vec<u64>,
+) {
+    let accuracy = Accuracy {
+        order,
+        tolerances: (1e-9, 1e-9),
+    };
+    solution.start(start);
+    let mut expansion = Expansion::new();
+    for _ in 0..3 {
+        let taken = solution.advance(&accuracy, DoubleDouble::from(0.3));
+        solution.expansion(order, &mut expansion);
+        put(into, [taken.hi(), taken.lo(), expansion.unit]);
+        put(into, solution.state());
+        put(into, expansion.variables.into_iter().flatten());
+        put(into, [solution.rejected() as f64]);
+        if !taken.is_finite() {
+            break;
+        }
+    }
+}
+
+/// All solutions of a system from a start, after so many others of it.
+fn solutions(system: &TextSystem, start: &[f64; VARIABLES], others: usize) -> Vec<u64> {
+    let field = system.field::<VARIABLES>().expect("few variables");
+    let analytic = field.analytic().expect("formulas");
+    let mut all = Vec::new();
+    let mut solution = analytic.solution();
+    let mut tangent = analytic.tangent(&[0, 2]);
+    for _ in 0..others {
+        follow(&mut *solution, (start, ORDER), &mut Vec::new());
+        follow(&mut *tangent, (start, ORDER), &mut Vec::new());
+    }
+    follow(&mut *solution, (start, ORDER), &mut all);
+    follow(&mut *tangent, (start, ORDER), &mut all);
+    let derivatives = tangent.derivatives();
+    put(&mut all, derivatives.start.into_iter().flatten());
+    put(&mut all, derivatives.parameters.into_iter().flatten());
+    put(&mut all, [derivatives.log_determinant]);
+    for i in 0..system.variables() {
+        let mut series = Vec::new();
+        assert!(tangent.derivative_series(i, ORDER, &mut series));
+        put(&mut all, series);
+    }
+    let mut reference = analytic.reference();
+    follow(&mut *reference, (start, REFERENCE_ORDER), &mut all);
+    all
+}
+
+/// What a new thread makes, which has not made a solution before.
+fn anew<X: Send>(make: impl FnOnce() -> X + Send) -> X {
+    std::thread::scope(|scope| scope.spawn(make).join().expect("it ends"))
+}
+
+/// How many of the solutions differ from those at the values before.
+fn check(seeds: Range<u64>, formulas: impl Fn(&mut Random) -> Expressions + Sync) -> usize {
+    let differ = |seed: u64| {
+        let mut random = Random(seed);
+        let rates = formulas(&mut random);
+        let states = &["u", "v", "w", "x"][..rates.count()];
+        let parameters = ["a", "b", "c"].map(|name| (name, 0.0));
+        let system = TextSystem::new(rates.clone(), states, &parameters).expect("few states");
+        let all: Vec<Vec<f64>> = (0..VALUES).map(|_| values(&mut random)).collect();
+        let start = [0.0; VARIABLES].map(|_| 2.0 * random.number() - 0.5);
+        let at = |values: &[f64]| {
+            let mut system = system.clone();
+            for (place, &value) in values.iter().enumerate() {
+                system.put(place, value);
+            }
+            system
+        };
+        // Some are compiled.
+        let others = if seed % 8 == 0 { MANY } else { 0 };
+        let in_turn = anew(|| {
+            let others = |i: usize| if i == 0 { others } else { 0 };
+            let solved =
+                |(i, values): (usize, &Vec<f64>)| solutions(&at(values), &start, others(i));
+            all.iter().enumerate().map(solved).collect::<Vec<_>>()
+        });
+        for (values, solved) in all.iter().zip(&in_turn) {
+            let made = anew(|| solutions(&at(values), &start, 0));
+            assert!(
+                *solved == made,
+                "formula {seed} at {values:?} of {all:?}: {rates:?}"
+            );
+        }
+        in_turn.windows(2).filter(|both| both[0] != both[1]).count()
+    };
+    seeds.into_par_iter().map(differ).sum()
+}
+
+#[test]
+fn random_formulas_have_the_solutions_that_are_made_at_the_values() {
+    let variables = |random: &mut Random| 1 + random.below(VARIABLES);
+    let differ = check(0..300, |random| {
+        let count = variables(random);
+        drawn(random, count)
+    });
+    assert!(differ > 1500, "{differ}");
+}
+
+#[test]
+fn parts_that_are_alike_at_some_values_do_too() {
+    let differ = check(0..150, twins);
+    assert!(differ > 700, "{differ}");
+}
