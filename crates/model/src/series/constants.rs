@@ -13,8 +13,12 @@ pub(super) struct Constant(NodeIndex);
 #[derive(Debug, Clone, Default)]
 pub(super) struct Constants {
     values: Vec<DoubleDouble>,
+    /// Whether a parameter is part of each.
+    vary: Vec<bool>,
     /// The places of all that are asked for, and how they are made of those before them.
     made: Vec<(NodeIndex, Node)>,
+    /// Those of these that vary.
+    varying: Vec<(NodeIndex, Node)>,
     /// Parameters are the variables after so many.
     variables: usize,
     parameters: Vec<f64>,
@@ -66,6 +70,7 @@ impl Constants {
         values.extend([DoubleDouble::ONE, -DoubleDouble::ONE]);
         Constants {
             nodes,
+            vary: vec![false; values.len()],
             values,
             variables,
             parameters: parameters.to_vec(),
@@ -76,6 +81,12 @@ impl Constants {
     /// That of a node that is asked for, whose operands are constants.
     pub fn of_node(&mut self, place: NodeIndex, node: Node) -> Constant {
         self.made.push((place, node));
+        let mut operands = node.operands().into_iter().flatten();
+        let varies = matches!(node, Node::Variable(_)) || operands.any(|at| self.vary[at]);
+        if varies {
+            self.varying.push((place, node));
+        }
+        self.vary[place] = varies;
         self.values[place] = self.evaluated(node);
         Constant(place)
     }
@@ -87,6 +98,11 @@ impl Constants {
 
     pub fn value(&self, constant: Constant) -> DoubleDouble {
         self.values[constant.0]
+    }
+
+    /// Whether a parameter is part of it.
+    pub fn varies(&self, constant: Constant) -> bool {
+        self.vary[constant.0]
     }
 
     /// Whether they are those at these values of the parameters.
@@ -101,8 +117,8 @@ impl Constants {
     /// Makes them at these values. Returns whether what was decided by them still holds.
     pub fn set(&mut self, parameters: &[f64]) -> bool {
         self.parameters.copy_from_slice(parameters);
-        for at in 0..self.made.len() {
-            let (place, node) = self.made[at];
+        for at in 0..self.varying.len() {
+            let (place, node) = self.varying[at];
             self.values[place] = self.evaluated(node);
         }
         self.decisions.iter().all(|&decision| match decision {
@@ -115,30 +131,31 @@ impl Constants {
 
     pub fn is_zero(&mut self, a: Constant) -> bool {
         let is_zero = self.value(a) == DoubleDouble::ZERO;
-        self.decide(Decision::IsZero(a, is_zero));
+        self.decide(self.varies(a), Decision::IsZero(a, is_zero));
         is_zero
     }
 
     pub fn is_double(&mut self, a: Constant) -> bool {
         let is_double = self.value(a).lo() == 0.0;
-        self.decide(Decision::IsDouble(a, is_double));
+        self.decide(self.varies(a), Decision::IsDouble(a, is_double));
         is_double
     }
 
     pub fn are_same(&mut self, a: Constant, b: Constant) -> bool {
         let are_same = self.value(a) == self.value(b);
-        self.decide(Decision::AreSame([a, b], are_same));
+        let vary = self.varies(a) || self.varies(b);
+        self.decide(vary, Decision::AreSame([a, b], are_same));
         are_same
     }
 
     pub fn exponent(&mut self, a: Constant) -> Exponent {
         let exponent = Exponent::of(self.value(a));
-        self.decide(Decision::Exponent(a, exponent));
+        self.decide(self.varies(a), Decision::Exponent(a, exponent));
         exponent
     }
 
-    fn decide(&mut self, decision: Decision) {
-        if !self.decisions.contains(&decision) {
+    fn decide(&mut self, varies: bool, decision: Decision) {
+        if varies && !self.decisions.contains(&decision) {
             self.decisions.push(decision);
         }
     }
@@ -181,10 +198,10 @@ impl Constants {
 
     /// What is no node of the formula.
     fn more(&mut self, node: Node) -> Constant {
-        let value = self.evaluated(node);
-        self.made.push((self.values.len(), node));
-        self.values.push(value);
-        Constant(self.values.len() - 1)
+        let place = self.values.len();
+        self.values.push(DoubleDouble::ZERO);
+        self.vary.push(false);
+        self.of_node(place, node)
     }
 
     fn evaluated(&self, node: Node) -> DoubleDouble {

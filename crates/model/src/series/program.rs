@@ -6,7 +6,7 @@
 //! code for each formula.
 
 use super::constants::{Constant, Constants};
-use super::later::LaterOrders;
+use super::later::{Later, LaterOrders};
 use crate::number::{Balance, DoubleDouble, Ratio};
 
 /// A quantity: a number, or the row of its coefficients.
@@ -319,6 +319,26 @@ impl Program {
         let mut constants = std::mem::take(&mut self.constants);
         self.later = LaterOrders::of(self, &mut constants);
         self.constants = constants;
+    }
+
+    /// Whether parameters are part of the constants of an operation.
+    pub fn varies(&self, operation: Operation<Constant>) -> bool {
+        let mut varies = false;
+        operation.map(|row| row, |x| varies |= self.constants.varies(x));
+        varies
+    }
+
+    /// The same of what is carried out at later orders.
+    pub fn varies_later(&self, later: &Later) -> bool {
+        match later {
+            Later::Sum { from, to, .. } => {
+                let mut terms = self.later.terms[*from..*to].iter();
+                terms.any(|term| self.constants.varies(term.factor))
+            }
+            Later::Other(one, multiple) => {
+                self.varies(one.operation) || self.constants.varies(multiple.factor)
+            }
+        }
     }
 
     /// An output, with its value where it is a number.

@@ -22,6 +22,9 @@ pub(super) struct ProgramRows<T: Element> {
     later: Vec<PlacedLater<T>>,
     /// Those of the later ones for which the first coefficients count.
     prepared: Vec<usize>,
+    /// The places, among those of the first order and the later ones, of those whose constants parameters are part of.
+    varying_first: Vec<usize>,
+    varying_later: Vec<usize>,
     /// The rates of the variables, and those that are no sums at later orders.
     rates: Vec<Rate>,
     rates_apart: Vec<Rate>,
@@ -86,6 +89,12 @@ impl<T: Element> ProgramRows<T> {
                 .map(|one| placed(one, room, &program.constants))
                 .collect(),
             of_rates: program.of_rates(),
+            varying_first: (0..program.instructions().len())
+                .filter(|&i| program.varies(program.instructions()[i].operation))
+                .collect(),
+            varying_later: (0..later.len())
+                .filter(|&i| program.varies_later(&program.later.all[i]))
+                .collect(),
             rates_apart,
             prepared: (0..later.len())
                 .filter(|&i| is_prepared(&later[i]))
@@ -98,14 +107,17 @@ impl<T: Element> ProgramRows<T> {
 
     /// Takes over the constants of the program, which is theirs but for these. Returns whether all stands where it did.
     pub fn set(&mut self, program: &Program) -> bool {
-        for (known, one) in self.first.iter_mut().zip(program.instructions()) {
-            *known = placed(one, self.room, &program.constants);
+        for &i in &self.varying_first {
+            self.first[i] = placed(&program.instructions()[i], self.room, &program.constants);
         }
         for rate in self.rates.iter_mut().chain(&mut self.rates_apart) {
             rate.of = program.output(rate.variable);
         }
-        let mut later = self.later.iter_mut().zip(&program.later.all);
-        later.all(|(known, one)| known.set(one, program, self.room, self.any))
+        let mut later = self.varying_later.iter();
+        later.all(|&i| {
+            let one = &program.later.all[i];
+            self.later[i].set(one, program, self.room, self.any)
+        })
     }
 
     /// The coefficients of a row.
@@ -172,6 +184,11 @@ impl<T: Element> ProgramRows<T> {
     #[inline(always)]
     pub fn later(&self) -> &[PlacedLater<T>] {
         &self.later
+    }
+
+    /// Those of the later ones whose constants parameters are part of.
+    pub fn varying(&self) -> &[usize] {
+        &self.varying_later
     }
 
     /// The rates that are no sums.

@@ -107,14 +107,14 @@ impl<T: Element> Data<T> {
             numbers,
             unit: any.like(f64::NAN),
         };
-        data.set(rows);
+        data.set(rows, 0..rows.later().len());
         data
     }
 
-    /// Takes over the constants of the rows.
-    pub fn set(&mut self, rows: &ProgramRows<T>) {
-        for (step, later) in rows.later().iter().enumerate() {
-            match later {
+    /// Takes over the constants of these operations of later orders.
+    pub fn set(&mut self, rows: &ProgramRows<T>, steps: impl IntoIterator<Item = usize>) {
+        for step in steps {
+            match &rows.later()[step] {
                 PlacedLater::Sum(sum) => {
                     for (j, term) in sum.terms.iter().enumerate() {
                         let at = self.layout.factor_of_term(step, j);

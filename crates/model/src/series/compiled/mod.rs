@@ -86,8 +86,9 @@ impl<T: Element> Compiled<T> {
 
     /// Takes over the constants of the rows, which are as they were but for these. Returns whether the kernels hold for them.
     pub fn set(&mut self, rows: &ProgramRows<T>) -> bool {
-        self.data.set(rows);
-        self.formula.shape().holds_for(rows.later())
+        let varying = rows.varying();
+        self.data.set(rows, varying.iter().copied());
+        self.formula.shape().holds_for(rows.later(), varying)
     }
 
     /// Makes the coefficients of all rows below an order, and of the variables that one too, of rows that are prepared; returns whether it did:
