@@ -87,8 +87,8 @@ fn solutions(system: &TextSystem, start: &[f64; VARIABLES], others: usize) -> Ve
     let field = system.field::<VARIABLES>().expect("few variables");
     let analytic = field.analytic().expect("formulas");
     let free: &[usize] = match system.parameters() {
-        [_] => &[0],
-        _ => &[0, 2],
+        [_, _, _] => &[0, 2],
+        _ => &[0],
     };
     let mut all = Vec::new();
     let mut solution = analytic.solution();
@@ -183,7 +183,13 @@ fn whether_a_variable_is_a_factor_of_its_rate_may_depend_on_the_value() {
     let start = [1e-10, 0.0, 0.0, 0.0];
     let values = [1.3, 0.7, 1.3];
     let in_turn = anew(|| values.map(|p| solutions(&at(p), &start, 0)));
-    for (p, solved) in values.into_iter().zip(in_turn) {
-        assert!(solved == anew(|| solutions(&at(p), &start, 0)), "{p}");
+    for (p, solved) in values.into_iter().zip(&in_turn) {
+        assert!(*solved == anew(|| solutions(&at(p), &start, 0)), "{p}");
     }
+    // A parameter that is not in the formula changes nothing.
+    let all = [("p", 1.3), ("q", 0.1)];
+    let more = TextSystem::new(rates.clone(), &["x"], &all).expect("one state");
+    let both = [&more, &at(0.7), &more];
+    let in_turn_again = anew(|| both.map(|system| solutions(system, &start, 0)));
+    assert!(in_turn == in_turn_again);
 }

@@ -116,7 +116,9 @@ impl Constants {
 
     /// Makes them at these values. Returns whether what was decided by them still holds.
     pub fn set(&mut self, parameters: &[f64]) -> bool {
-        self.parameters.copy_from_slice(parameters);
+        // Others may stand after those that the formula names.
+        self.parameters.clear();
+        self.parameters.extend(parameters);
         for at in 0..self.varying.len() {
             let (place, node) = self.varying[at];
             self.values[place] = self.evaluated(node);

@@ -43,8 +43,8 @@ pub(super) trait Trajectory {
     fn is_at(&self, _parameters: &[f64]) -> bool {
         false
     }
-    /// Makes it that of these values, and of these factors of their own rates. Returns whether it could: its program may not hold there, nor does
-    /// that of a solution which is made but once. It is good for nothing then.
+    /// Takes over these values, where these variables are factors of their own rates. Returns whether it could: where its program does not hold for
+    /// them it is to be dropped. Solutions that are made but once don't ask.
     fn set(&mut self, _parameters: &[f64], _own_factors: &[bool]) -> bool {
         false
     }

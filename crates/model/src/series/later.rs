@@ -199,7 +199,7 @@ fn multiples(
     all
 }
 
-/// The operation with the row of which its first operand is a multiple in the place of that.
+/// The operation with the row of which its first operand is a multiple in the place of that. The factor of what is no multiple is 1.
 fn with_multiple(
     one: Instruction<Constant>,
     multiples: &[Multiple<Constant>],

@@ -163,14 +163,14 @@ impl Kept {
     }
 
     fn is_of(&self, of: &Formulas<'_>) -> bool {
-        // Of the same formulas their places alone are compared.
+        // What is shared is not looked into.
         self.variables == of.variables
             && self.free == of.free
             && self.rates == *of.rates
             && self.slip_rates.as_ref() == of.slip_rates
     }
 
-    /// Makes the program that at these parameters.
+    /// Makes the program the one at these parameters.
     fn set(&mut self, of: &Formulas<'_>) {
         let constants = &mut self.program.constants;
         if constants.are_at(of.parameters) {
@@ -182,7 +182,7 @@ impl Kept {
         self.program.own_factors.clone_from(of.own_factors());
     }
 
-    /// A solution that is done with, at these parameters.
+    /// A solution that is done with, made the one at these parameters. Those that can't be are dropped.
     fn take(&mut self, of: &Formulas<'_>) -> Option<Box<dyn Trajectory>> {
         let at_these = |one: &Box<dyn Trajectory>| one.is_at(of.parameters);
         if let Some(place) = self.idle.iter().rposition(at_these) {

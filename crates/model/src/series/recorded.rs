@@ -108,6 +108,7 @@ impl<'a> Recording<'a> {
     }
 }
 
+#[cfg_attr(not(target_arch = "x86_64"), allow(unused_mut))]
 fn solution_of<'b>(
     (mut program, record): Anew<'b>,
     (watched, ..): Kind,
@@ -305,6 +306,7 @@ impl<'a, const N: usize> ByRecording<'a, N> for RecordedExpressions<'a, N> {
 }
 
 /// The formulas at a state, in one lane and, where they have two parts that are alike, in two: to be run in loops and compiled, for tests.
+#[cfg_attr(not(target_arch = "x86_64"), allow(unused_mut))]
 pub fn both_ways(
     rates: &Arc<Expressions>,
     parameters: &[f64],

@@ -20,8 +20,8 @@ enum At {
 }
 
 impl Program {
-    /// The same program in two lanes, by the two variables that make most pairs of operations; `None` where few are alike. Either then holds
-    /// for constants of which as many are the same.
+    /// The same program in two lanes, by the two variables that make most pairs of operations; `None` where few are alike. Which
+    /// constants are the same is decided with that.
     pub fn in_two_lanes(&mut self) -> Option<Program> {
         let mut constants = std::mem::take(&mut self.constants);
         let folded = self.folded_in_two(&mut constants);
@@ -74,12 +74,12 @@ impl<'a> Pairing<'a> {
                 continue;
             }
             let image = pairing.image(one.operation);
-            let mut alike = |b: &usize| {
+            let alike = |b: &usize| {
                 let free = !pairing.taken[*b] && *b != a && pairing.seconds[*b].is_none();
                 free && all[*b].operation.is_like(image, constants)
             };
             // Also before it: of the two either may come first.
-            let found = (0..all.len()).find(&mut alike);
+            let found = (0..all.len()).find(alike);
             if let Some(b) = found {
                 pairing.join(a, b);
             }
