@@ -15,10 +15,10 @@ pub(super) struct Constants {
     values: Vec<DoubleDouble>,
     /// Whether a parameter is part of each.
     vary: Vec<bool>,
-    /// The places of all that are asked for, and how they are made of those before them.
-    made: Vec<(NodeIndex, Node)>,
-    /// Those of these that vary.
+    /// The places of these, in order, and how they are made of those before them.
     varying: Vec<(NodeIndex, Node)>,
+    /// The same of balances, which two constants are made of.
+    balances: Vec<(NodeIndex, Node)>,
     /// Parameters are the variables after so many.
     variables: usize,
     parameters: Vec<f64>,
@@ -80,7 +80,9 @@ impl Constants {
 
     /// That of a node that is asked for, whose operands are constants.
     pub fn of_node(&mut self, place: NodeIndex, node: Node) -> Constant {
-        self.made.push((place, node));
+        if matches!(node, Node::Balanced(..)) {
+            self.balances.push((place, node));
+        }
         let mut operands = node.operands().into_iter().flatten();
         let varies = matches!(node, Node::Variable(_)) || operands.any(|at| self.vary[at]);
         if varies {
@@ -233,7 +235,7 @@ impl Constants {
             Node::Sign(a) => Real::sign(at(a)),
             Node::Signed(a, b) => at(a) * Real::sign(at(b)),
             Node::Balanced(a, g) => Real::balanced(at(a), g.of(at)).0,
-            Node::OfBalanced(y) => match self.made.iter().find(|(place, _)| *place == y) {
+            Node::OfBalanced(y) => match self.balances.iter().find(|(place, _)| *place == y) {
                 Some(&(_, Node::Balanced(a, g))) => Real::balanced(at(a), g.of(at)).1,
                 _ => unreachable!("of a balance"),
             },

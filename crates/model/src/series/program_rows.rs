@@ -62,8 +62,13 @@ impl<T: Element> ProgramRows<T> {
     pub fn new(program: &Program, room: usize, any: T) -> Self {
         let first = program.instructions().iter();
         // None where there is room for the first coefficients alone.
-        let later = program.later.all.iter().filter(|_| room > 1);
+        let later = if room > 1 {
+            &program.later.all[..]
+        } else {
+            &[]
+        };
         let mut later: Vec<_> = later
+            .iter()
             .map(|one| PlacedLater::new(one, program, room, any))
             .collect();
         let rate = |variable| Rate {
