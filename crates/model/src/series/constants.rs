@@ -15,9 +15,9 @@ pub(super) struct Constants {
     values: Vec<DoubleDouble>,
     /// Whether a parameter is part of each.
     vary: Vec<bool>,
-    /// The places of these, in order, and how they are made of those before them.
+    /// The places of those that parameters are part of, in order, and how they are made of those before them.
     varying: Vec<(NodeIndex, Node)>,
-    /// The same of balances, which two constants are made of.
+    /// The same of balances, each of which gives two constants.
     balances: Vec<(NodeIndex, Node)>,
     /// Parameters are the variables after so many.
     variables: usize,
