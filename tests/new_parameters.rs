@@ -136,7 +136,7 @@ fn check(seeds: Range<u64>, formulas: impl Fn(&mut Random) -> Expressions + Sync
             system
         };
         // Some are compiled.
-        let others = if seed % 8 == 0 { MANY } else { 0 };
+        let others = if seed.is_multiple_of(8) { MANY } else { 0 };
         let in_turn: Vec<_> = anew(|| {
             let solved = |values: &Vec<f64>| solutions(&at(values), &start, others);
             all.iter().map(solved).collect()

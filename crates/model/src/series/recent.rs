@@ -184,8 +184,8 @@ impl Kept {
 
     /// A solution that is done with, made the one at these parameters. Those that can't be are dropped.
     fn take(&mut self, of: &Formulas<'_>) -> Option<Box<dyn Trajectory>> {
-        let at_these = |one: &Box<dyn Trajectory>| one.is_at(of.parameters);
-        if let Some(place) = self.idle.iter().rposition(at_these) {
+        let mut idle = self.idle.iter();
+        if let Some(place) = idle.rposition(|one| one.is_at(of.parameters)) {
             return Some(self.idle.swap_remove(place));
         }
         while let Some(mut solution) = self.idle.pop() {
