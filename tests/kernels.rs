@@ -4,15 +4,16 @@ use crate::command::twinslip;
 use crate::common::data;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use twinslip::expression::{Binary, Builder, Expressions, Function};
 use twinslip::integrate::used_vectors;
 use twinslip::internals::{both_ways, columns_both_ways};
 
 /// Random numbers (splitmix64).
-struct Random(u64);
+pub struct Random(pub u64);
 
 impl Random {
-    fn bits(&mut self) -> u64 {
+    pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -20,16 +21,16 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    fn below(&mut self, n: usize) -> usize {
+    pub fn below(&mut self, n: usize) -> usize {
         (self.bits() % n as u64) as usize
     }
 
     /// From 0 to 1.
-    fn number(&mut self) -> f64 {
+    pub fn number(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    fn of<T: Copy>(&mut self, all: &[T]) -> T {
+    pub fn of<T: Copy>(&mut self, all: &[T]) -> T {
         all[self.below(all.len())]
     }
 }
@@ -55,7 +56,7 @@ const FUNCTIONS: [Function; 16] = [
 const PARAMETERS: usize = 3;
 
 /// Right-hand sides in so many variables.
-fn drawn(random: &mut Random, variables: usize) -> Expressions {
+pub fn drawn(random: &mut Random, variables: usize) -> Expressions {
     let mut builder = Builder::default();
     let mut all = Vec::new();
     all.extend((0..variables).map(|i| builder.variable(i)));
@@ -116,7 +117,7 @@ fn random_formulas_have_the_same_series_compiled() {
     for seed in 0..1500 {
         let mut random = Random(seed);
         let variables = 1 + random.below(4);
-        let rates = drawn(&mut random, variables);
+        let rates = Arc::new(drawn(&mut random, variables));
         let state: Vec<f64> = (0..variables)
             .map(|_| 2.0 * random.number() - 0.5)
             .collect();

@@ -75,6 +75,8 @@ mod many_variables;
 mod many_variables_branches;
 mod many_variables_orbits;
 mod multiple_points;
+#[cfg(target_arch = "x86_64")]
+mod new_parameters;
 mod normal_forms_of_systems;
 mod numbers;
 mod options_used;

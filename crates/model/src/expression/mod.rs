@@ -114,7 +114,7 @@ pub enum Binary {
 }
 
 /// Formulas in some variables and parameters, complete.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Expressions {
     operations: Vec<Operation>,
     outputs: Vec<Place>,

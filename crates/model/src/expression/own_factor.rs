@@ -11,45 +11,48 @@ impl Expressions {
     /// For every variable, whether the formula at its place has it as a factor, and is 0 where the variable is.
     ///
     /// # Panics
-    /// Where there are fewer formulas or parameters than they name.
+    /// Where there are fewer formulas or parameters than they name, or more than 128 variables.
     pub fn own_factors(&self, variables: usize, parameters: &[f64]) -> Vec<bool> {
-        (0..variables)
-            .map(|i| self.has_own_factor(i, variables, parameters))
-            .collect()
+        assert!(variables <= u128::BITS as usize, "one bit for each");
+        let multiples = self.multiples(parameters);
+        let all = (0..variables).map(|i| {
+            multiples[self.outputs[i]] & (1 << i) != 0 && self.ends_at(i, variables, parameters)
+        });
+        all.collect()
     }
 
-    fn has_own_factor(&self, i: usize, variables: usize, parameters: &[f64]) -> bool {
-        if !self.multiples_of(i, parameters)[self.outputs[i]] {
-            return false;
-        }
+    /// Whether a rate is 0 where its variable is.
+    fn ends_at(&self, i: usize, variables: usize, parameters: &[f64]) -> bool {
         // A cofactor that is infinite there takes the factor away, as in x/sqrt(x): seen at some values of the others.
         let some = |j: usize| if j == i { 0.0 } else { 0.7 + 0.3 * j as f64 };
         let there: Vec<f64> = (0..variables).map(some).collect();
         self.evaluate(&there, parameters)[i] == 0.0
     }
 
-    /// For every operation whether it goes to 0 with the variable, at least in proportion to it where its cofactors are finite.
-    fn multiples_of(&self, variable: usize, parameters: &[f64]) -> Vec<bool> {
+    /// For every operation the variables, by bits, with which it goes to 0, at least in proportion to them where its cofactors are finite.
+    fn multiples(&self, parameters: &[f64]) -> Vec<u128> {
         use Operation::*;
-        let mut multiples: Vec<bool> = Vec::with_capacity(self.operations.len());
+        let mut multiples: Vec<u128> = Vec::with_capacity(self.operations.len());
         for operation in &self.operations {
             let of = |place: usize| multiples[place];
             let multiple = match *operation {
-                Variable(i) => i == variable,
-                Sum(a, b) | Difference(a, b) | Lesser(a, b) | Greater(a, b) => of(a) && of(b),
-                Product(a, b) => of(a) || of(b),
+                Variable(i) => 1 << i,
+                Sum(a, b) | Difference(a, b) | Lesser(a, b) | Greater(a, b) => of(a) & of(b),
+                Product(a, b) => of(a) | of(b),
                 Negative(a) | Quotient(a, _) | Signed(a, _) => of(a),
-                Whole(a, n) => n > 0 && of(a),
+                Whole(a, n) if n > 0 => of(a),
                 Power(a, b) => {
                     let exponent = match self.operations[b] {
                         Number(bits) => f64::from_bits(bits),
                         Parameter(q) => parameters[q],
                         _ => 0.0,
                     };
-                    exponent >= 1.0 && of(a)
+                    if exponent >= 1.0 { of(a) } else { 0 }
                 }
-                Call(function, a) => is_odd_or_zero(function) && of(a),
-                Parameter(_) | Number(_) | Pi | Ratio(..) | Balanced(..) => false,
+                Call(function, a) if is_odd_or_zero(function) => of(a),
+                Whole(..) | Call(..) | Parameter(_) | Number(_) | Pi | Ratio(..) | Balanced(..) => {
+                    0
+                }
             };
             multiples.push(multiple);
         }

@@ -361,7 +361,7 @@ impl<'a, const N: usize> TextField<'a, N> {
     fn recorded(&self) -> RecordedExpressions<'_, N> {
         RecordedExpressions {
             rates: &self.system.rates,
-            slip_rates: self.system.slip_rates.as_deref(),
+            slip_rates: self.system.slip_rates.as_ref(),
             parameters: &self.system.parameters,
         }
     }
@@ -369,7 +369,10 @@ impl<'a, const N: usize> TextField<'a, N> {
 
 impl<const N: usize> VectorField<N> for TextField<'_, N> {
     fn f(&self, y: &State<N>) -> State<N> {
-        state(&self.system.rates(self.variables(y)))
+        let TextSystem {
+            rates, parameters, ..
+        } = &*self.system;
+        state(&rates.evaluate(self.variables(y), parameters))
     }
 
     fn dimension(&self) -> usize {

@@ -1,8 +1,8 @@
 //! From a recorded formula to the operations of its [`Program`] at values of its parameters.
 
+use super::constants::{Constant, Constants, Exponent};
 use super::program::{Instruction, Operation, Program, Source};
 use super::trace::{Graph, Node, NodeIndex, Traced};
-use crate::number::{DoubleDouble, Real};
 
 /// Rows before that of a balance.
 const BALANCE_ROWS: usize = 6;
@@ -33,20 +33,20 @@ impl RecordedFormula {
 
     /// The operations that the outputs need at these values of the parameters.
     pub fn program(&self, parameters: &[f64]) -> Program {
-        let mut program = Program::empty(self.variables);
+        let constants = Constants::new(self.nodes.len(), self.variables, parameters);
+        let mut program = Program::empty(self.variables, constants);
         program.branches = self.branches;
         let mut assembly = Assembly {
             program,
             sources: Vec::with_capacity(self.nodes.len()),
-            nodes: &self.nodes,
-            parameters,
         };
-        for (node, needed) in self.nodes.iter().zip(&self.needed) {
-            // A constant, for what nobody asks for.
-            let source = if *needed {
-                assembly.source(*node)
+        for (place, (node, needed)) in self.nodes.iter().zip(&self.needed).enumerate() {
+            let source = if !needed {
+                Source::Number(Constants::unasked(place))
+            } else if assembly.is_constant(*node) {
+                Source::Number(assembly.program.constants.of_node(place, *node))
             } else {
-                Source::Number(DoubleDouble::ZERO)
+                assembly.source(*node)
             };
             assembly.sources.push(source);
         }
@@ -71,57 +71,34 @@ fn needed(nodes: &[Node], outputs: &[NodeIndex]) -> Vec<bool> {
         if !needed[place] {
             continue;
         }
-        match nodes[place] {
-            Node::Variable(_) | Node::Constant(..) => {}
-            Node::Negative(a)
-            | Node::Exponential(a)
-            | Node::Logarithm(a)
-            | Node::Sinh(a)
-            | Node::Sin(a)
-            | Node::HyperbolicTangent(a)
-            | Node::Power(a, _)
-            | Node::Ratio(a, _)
-            | Node::OfBalanced(a)
-            | Node::Sign(a) => needed[a] = true,
-            Node::Balanced(a, g) => {
-                needed[a] = true;
-                g.of(|at| at).map(|at| needed[at] = true);
-            }
-            Node::Sum(a, b)
-            | Node::Difference(a, b)
-            | Node::Product(a, b)
-            | Node::Quotient(a, b)
-            | Node::ExponentialLessOne(a, b)
-            | Node::LogarithmOfOneMore(a, b)
-            | Node::Cosh(a, b)
-            | Node::Cos(a, b)
-            | Node::Arctangent(a, b)
-            | Node::InverseHyperbolicSine(a, b)
-            | Node::VariablePower(a, b)
-            | Node::Signed(a, b) => {
-                needed[a] = true;
-                needed[b] = true;
-            }
-        }
+        let operands = nodes[place].operands().into_iter().flatten();
+        operands.for_each(|at| needed[at] = true);
     }
     needed
 }
 
 /// A program on its way.
-struct Assembly<'a> {
+struct Assembly {
     program: Program,
-    sources: Vec<Source>,
-    nodes: &'a [Node],
-    parameters: &'a [f64],
+    sources: Vec<Source<Constant>>,
 }
 
-impl Assembly<'_> {
+impl Assembly {
+    /// Whether a node is made of the parameters alone.
+    fn is_constant(&self, node: Node) -> bool {
+        if let Node::Variable(i) = node {
+            return i >= self.program.variables();
+        }
+        let mut operands = node.operands().into_iter().flatten();
+        operands.all(|at| matches!(self.sources[at], Source::Number(_)))
+    }
+
     fn row(&mut self) -> usize {
         self.program.take_row()
     }
 
     /// The row that an operation makes.
-    fn made(&mut self, operation: Operation, spare: bool) -> usize {
+    fn made(&mut self, operation: Operation<Constant>, spare: bool) -> usize {
         let result = self.row();
         let spare = if spare { self.row() } else { result };
         self.program.push(Instruction {
@@ -132,117 +109,82 @@ impl Assembly<'_> {
         result
     }
 
-    fn source(&mut self, node: Node) -> Source {
+    /// What a node is that a variable is part of.
+    fn source(&mut self, node: Node) -> Source<Constant> {
         use Operation as Op;
         use Source::{Number, Row};
         let at = |place: NodeIndex| self.sources[place];
+        let row = |place: NodeIndex| match self.sources[place] {
+            Row(row) => row,
+            Number(_) => unreachable!("it varies as what is made of it does"),
+        };
         let (operation, spare) = match node {
-            Node::Variable(i) => {
-                let parameter = i.checked_sub(self.program.variables());
-                return parameter.map_or(Row(i), |q| Number(self.parameters[q].into()));
-            }
-            Node::Constant(hi, lo) => {
-                return Number(DoubleDouble::new(f64::from_bits(hi), f64::from_bits(lo)));
-            }
+            Node::Variable(i) => return Row(i),
+            Node::Constant(..) => unreachable!("a constant"),
             Node::Sum(a, b) => match (at(a), at(b)) {
                 (Row(a), Row(b)) => (Op::Sum(a, b), false),
                 (Row(a), Number(x)) | (Number(x), Row(a)) => (Op::Shifted(a, x), false),
-                (Number(x), Number(y)) => return Number(x + y),
+                (Number(_), Number(_)) => unreachable!("a constant"),
             },
             Node::Difference(a, b) => match (at(a), at(b)) {
                 (Row(a), Row(b)) => (Op::Difference(a, b), false),
-                (Row(a), Number(x)) => (Op::Shifted(a, -x), false),
+                (Row(a), Number(x)) => (Op::Shifted(a, self.constants().negative(x)), false),
                 (Number(x), Row(a)) => (Op::Complement(x, a), false),
-                (Number(x), Number(y)) => return Number(x - y),
+                (Number(_), Number(_)) => unreachable!("a constant"),
             },
             Node::Product(a, b) => match (at(a), at(b)) {
                 (Row(a), Row(b)) => (Op::Product(a, b), false),
-                // As p x^(p-1) of p = 0, also where x is 0.
-                (Row(_), Number(x)) | (Number(x), Row(_)) if x == DoubleDouble::ZERO => {
-                    return Number(x);
+                (Row(a), Number(x)) | (Number(x), Row(a)) => {
+                    // As p x^(p-1) of p = 0, also where x is 0.
+                    if self.constants().is_zero(x) {
+                        return Number(x);
+                    }
+                    (Op::Scaled(a, x), false)
                 }
-                (Row(a), Number(x)) | (Number(x), Row(a)) => (Op::Scaled(a, x), false),
-                (Number(x), Number(y)) => return Number(x * y),
+                (Number(_), Number(_)) => unreachable!("a constant"),
             },
             Node::Quotient(a, b) => match (at(a), at(b)) {
                 (a, Row(b)) => (Op::Quotient(a, b), true),
                 (Row(a), Number(x)) => (Op::Over(a, x), false),
-                (Number(x), Number(y)) => return Number(x / y),
+                (Number(_), Number(_)) => unreachable!("a constant"),
             },
-            Node::Negative(a) => match at(a) {
-                Row(a) => (Op::Negative(a), false),
-                Number(x) => return Number(-x),
-            },
-            Node::Exponential(a) => match at(a) {
-                Row(a) => (Op::Exponential(a), true),
-                Number(x) => return Number(Real::exp(x)),
-            },
-            Node::ExponentialLessOne(a, whole) => match (at(a), at(whole)) {
-                (Row(a), Row(whole)) => (Op::ExponentialLessOne(a, whole), false),
-                (Number(x), _) => return Number(Real::exp_m1(x)),
-                _ => unreachable!("e^a is as constant as a"),
-            },
-            Node::Logarithm(a) => match at(a) {
-                Row(a) => (Op::Logarithm(a), true),
-                Number(x) => return Number(Real::ln(x)),
-            },
-            Node::LogarithmOfOneMore(a, whole) => match (at(a), at(whole)) {
-                (Row(a), Row(whole)) => (Op::LogarithmOfOneMore(a, whole), false),
-                (Number(x), _) => return Number(Real::ln_1p(x)),
-                _ => unreachable!("ln(1 + a) is as constant as a"),
-            },
-            Node::Sinh(a) => match at(a) {
-                Row(a) => {
-                    let cosh = self.row();
-                    (Op::Hyperbolic(a, cosh), true)
-                }
-                Number(x) => return Number(x.sinh()),
-            },
-            Node::Cosh(a, sinh) => match (at(a), at(sinh)) {
-                // As that of sinh took it.
-                (Row(_), Row(sinh)) => return Row(sinh - 1),
-                (Number(x), _) => return Number(x.cosh()),
-                _ => unreachable!("sinh a is as constant as a"),
-            },
-            Node::Sin(a) => match at(a) {
-                Row(a) => {
-                    let cos = self.row();
-                    (Op::Circular(a, cos), true)
-                }
-                Number(x) => return Number(Real::sin_cos(x).0),
-            },
-            Node::Cos(a, sin) => match (at(a), at(sin)) {
-                (Row(_), Row(sin)) => return Row(sin - 1),
-                (Number(x), _) => return Number(Real::sin_cos(x).1),
-                _ => unreachable!("sin a is as constant as a"),
-            },
-            Node::Arctangent(a, u) => match (at(a), at(u)) {
-                (Row(a), Row(u)) => (Op::Arctangent(a, u), true),
-                (Number(x), _) => return Number(Real::atan(x)),
-                _ => unreachable!("1 + a^2 is as constant as a"),
-            },
-            Node::InverseHyperbolicSine(a, u) => match (at(a), at(u)) {
-                (Row(a), Row(u)) => (Op::InverseHyperbolicSine(a, u), true),
-                (Number(x), _) => return Number(Real::asinh(x)),
-                _ => unreachable!("1 + a^2 is as constant as a"),
-            },
-            Node::HyperbolicTangent(a) => match at(a) {
-                Row(a) => {
-                    let slope = self.row();
-                    (Op::HyperbolicTangent(a, slope), true)
-                }
-                Number(x) => return Number(Real::tanh(x)),
-            },
-            Node::Power(a, p) => match at(a) {
-                Row(a) => return self.power(a, f64::from_bits(p).into()),
-                Number(x) => return Number(Real::powf(x, f64::from_bits(p))),
-            },
+            Node::Negative(a) => (Op::Negative(row(a)), false),
+            Node::Exponential(a) => (Op::Exponential(row(a)), true),
+            Node::ExponentialLessOne(a, whole) => {
+                (Op::ExponentialLessOne(row(a), row(whole)), false)
+            }
+            Node::Logarithm(a) => (Op::Logarithm(row(a)), true),
+            Node::LogarithmOfOneMore(a, whole) => {
+                (Op::LogarithmOfOneMore(row(a), row(whole)), false)
+            }
+            Node::Sinh(a) => {
+                let (a, cosh) = (row(a), self.row());
+                (Op::Hyperbolic(a, cosh), true)
+            }
+            // As that of sinh took it, and that of sin.
+            Node::Cosh(_, sinh) => return Row(row(sinh) - 1),
+            Node::Sin(a) => {
+                let (a, cos) = (row(a), self.row());
+                (Op::Circular(a, cos), true)
+            }
+            Node::Cos(_, sin) => return Row(row(sin) - 1),
+            Node::Arctangent(a, u) => (Op::Arctangent(row(a), row(u)), true),
+            Node::InverseHyperbolicSine(a, u) => (Op::InverseHyperbolicSine(row(a), row(u)), true),
+            Node::HyperbolicTangent(a) => {
+                let (a, slope) = (row(a), self.row());
+                (Op::HyperbolicTangent(a, slope), true)
+            }
+            Node::Power(a, p) => {
+                let a = row(a);
+                let p = self.constants().number(f64::from_bits(p));
+                return self.power(a, p);
+            }
             Node::VariablePower(a, p) => match (at(a), at(p)) {
                 (Row(a), Number(p)) => return self.power(a, p),
-                (Number(x), Number(p)) => return Number(Real::pow(x, p)),
                 // Else e^(p ln a).
                 (Number(x), Row(p)) => {
-                    let exponent = self.made(Op::Scaled(p, Real::ln(x)), false);
+                    let log = self.constants().logarithm(x);
+                    let exponent = self.made(Op::Scaled(p, log), false);
                     (Op::Exponential(exponent), true)
                 }
                 (Row(a), Row(p)) => {
@@ -250,76 +192,53 @@ impl Assembly<'_> {
                     let exponent = self.made(Op::Product(p, log), false);
                     (Op::Exponential(exponent), true)
                 }
+                (Number(_), Number(_)) => unreachable!("a constant"),
             },
-            Node::Ratio(a, ratio) => match at(a) {
-                Row(a) => (Op::Ratio(a, ratio), false),
-                Number(x) => return Number(Real::ratio(x, ratio)),
-            },
-            Node::Sign(a) => match at(a) {
-                Row(a) => {
-                    self.watch_sign_of(a);
-                    (Op::Sign(a), false)
-                }
-                Number(x) => return Number(Real::sign(x)),
-            },
+            Node::Ratio(a, ratio) => (Op::Ratio(row(a), ratio), false),
+            Node::Sign(a) => {
+                let a = row(a);
+                self.watch_sign_of(a);
+                (Op::Sign(a), false)
+            }
             Node::Signed(a, b) => match (at(a), at(b)) {
                 (Row(a), Row(b)) => {
                     self.watch_sign_of(b);
                     (Op::Signed(a, b), false)
                 }
-                (Row(a), Number(x)) => (Op::Scaled(a, Real::sign(x)), false),
+                (Row(a), Number(x)) => (Op::Scaled(a, self.constants().sign(x)), false),
                 (Number(x), Row(b)) => {
                     self.watch_sign_of(b);
                     (Op::Scaled(self.made(Op::Sign(b), false), x), false)
                 }
-                (Number(x), Number(y)) => return Number(x * Real::sign(y)),
+                (Number(_), Number(_)) => unreachable!("a constant"),
             },
             Node::Balanced(a, g) => {
                 let (a, g) = (at(a), g.of(at));
-                let mut varies = matches!(a, Row(_));
-                g.map(|c| varies |= matches!(c, Row(_)));
-                if !varies {
-                    let number = |x: Source| match x {
-                        Number(x) => x,
-                        Row(_) => unreachable!("constants"),
-                    };
-                    return Number(Real::balanced(number(a), g.map(number)).0);
-                }
                 self.program.take_rows(BALANCE_ROWS);
                 (Op::Balanced(a, g), true)
             }
-            Node::OfBalanced(y) => match (at(y), self.nodes[y]) {
-                // As that of y took it.
-                (Row(y), _) => return Row(y - 1),
-                (Number(_), Node::Balanced(a, g)) => match (at(a), g.of(at)) {
-                    (Number(a), g) => {
-                        let number = |x: Source| match x {
-                            Number(x) => x,
-                            Row(_) => unreachable!("constants"),
-                        };
-                        return Number(Real::balanced(a, g.map(number)).1);
-                    }
-                    _ => unreachable!("constants"),
-                },
-                _ => unreachable!("of a balance"),
-            },
+            // As that of y took it.
+            Node::OfBalanced(y) => return Row(row(y) - 1),
         };
         Row(self.made(operation, spare))
     }
 
+    fn constants(&mut self) -> &mut Constants {
+        &mut self.program.constants
+    }
+
     /// a^p. Whole powers are products: they have series where a is 0 or negative.
-    fn power(&mut self, a: usize, p: DoubleDouble) -> Source {
-        /// Larger ones are left as they are.
-        const MOST: f64 = 64.0;
-        if p.lo() != 0.0 || p.hi().fract() != 0.0 || p.hi().abs() > MOST {
+    fn power(&mut self, a: usize, p: Constant) -> Source<Constant> {
+        let exponent = self.constants().exponent(p);
+        let Exponent::Whole(whole) = exponent else {
             let made = self.made(Operation::Power(a, p), true);
             self.program.bases.push(a);
-            if is_of_root(p) {
+            if exponent == Exponent::OfRoot {
                 self.program.branch_points.push(made);
             }
             return Source::Row(made);
-        }
-        let (mut rest, mut square, mut power) = (p.hi().abs() as u32, a, None);
+        };
+        let (mut rest, mut square, mut power) = (whole.unsigned_abs(), a, None);
         while rest > 0 {
             if rest & 1 == 1 {
                 power = Some(match power {
@@ -332,10 +251,10 @@ impl Assembly<'_> {
                 square = self.made(Operation::Product(square, square), false);
             }
         }
-        let one = Source::Number(1.0.into());
+        let one = Source::Number(self.constants().one());
         match power {
             None => one,
-            Some(power) if p.hi() > 0.0 => Source::Row(power),
+            Some(power) if whole > 0 => Source::Row(power),
             Some(power) => Source::Row(self.made(Operation::Quotient(one, power), true)),
         }
     }
@@ -371,10 +290,4 @@ impl Assembly<'_> {
             _ => self.program.kinks.push(row),
         }
     }
-}
-
-/// Whether a^p is an odd power of the square root of a.
-fn is_of_root(p: DoubleDouble) -> bool {
-    let twice = 2.0 * p.hi();
-    p.lo() == 0.0 && twice > 0.0 && twice % 2.0 == 1.0
 }

@@ -39,6 +39,15 @@ pub(super) trait Trajectory {
     fn order(&self, rtol: f64) -> usize {
         usual_order(rtol)
     }
+    /// Whether it is that of these values of the parameters.
+    fn is_at(&self, _parameters: &[f64]) -> bool {
+        false
+    }
+    /// Takes over these values, where these variables are factors of their own rates. Returns whether it could: where its program does not hold for
+    /// them it is to be dropped. Solutions that are made but once don't ask.
+    fn set(&mut self, _parameters: &[f64], _own_factors: &[bool]) -> bool {
+        false
+    }
     /// Begins at y.
     fn start(&mut self, y: &[f64]);
     /// As [`super::Solution::advance`].
@@ -121,10 +130,6 @@ impl<'a, T: Element> Interpreted<'a, T> {
     /// To be started, with room for so many coefficients; `any` is any number.
     pub(super) fn new((program, record): Anew<'a>, watched: usize, room: usize, any: T) -> Self {
         let zeros = vec![any.like(0.0); program.variables()];
-        let mut relative = vec![false; program.variables()];
-        for (&(row, _), &factor) in program.places.iter().zip(&program.own_factors) {
-            relative[row] |= factor;
-        }
         let reached = Reached {
             x: zeros.clone(),
             lost: zeros.clone(),
@@ -136,7 +141,6 @@ impl<'a, T: Element> Interpreted<'a, T> {
             rows,
             probe: ProgramRows::new(&program, 1, any),
             probed: false,
-            program,
             record,
             room,
             next: reached.clone(),
@@ -151,7 +155,8 @@ impl<'a, T: Element> Interpreted<'a, T> {
             slopes: zeros.clone(),
             crossing: 0.0,
             largest_so_far: zeros,
-            relative,
+            relative: program.relative(),
+            program,
         }
     }
 
@@ -194,8 +199,9 @@ impl<'a, T: Element> Interpreted<'a, T> {
         }
         let least = self.any.like(f64::max(LEAST, largest * f64::EPSILON));
         let rate = |i: usize| {
-            let rate = self.rows.coefficient(self.program.outputs[i], 0);
-            (rate / size(i).max(least)).abs().largest_lane()
+            (self.rows.rate(i) / size(i).max(least))
+                .abs()
+                .largest_lane()
         };
         let rate = rows().map(rate).fold(0.0, f64::max);
         self.next_unit = power_of_two(1.0 / f64::max(rate, f64::MIN_POSITIVE));
@@ -397,6 +403,21 @@ impl<T: Element> Trajectory for Interpreted<'_, T> {
         least.map_or(FINEST, |(_, order)| *order)
     }
 
+    fn is_at(&self, parameters: &[f64]) -> bool {
+        self.program.constants.are_at(parameters)
+    }
+
+    fn set(&mut self, parameters: &[f64], own_factors: &[bool]) -> bool {
+        let program = &mut self.program;
+        program.own_factors.copy_from_slice(own_factors);
+        self.relative = program.relative();
+        let compiled = &mut self.compiled;
+        program.constants.set(parameters)
+            && self.rows.set(program)
+            && self.probe.set(program)
+            && compiled.as_mut().is_none_or(|one| one.set(&self.rows))
+    }
+
     fn start(&mut self, y: &[f64]) {
         let mut x = self.reached.x.clone();
         for (&(row, lane), &y) in self.program.places.iter().zip(y) {
@@ -448,7 +469,7 @@ impl<T: Element> Trajectory for Interpreted<'_, T> {
         }
         // A single interface stands in both places.
         let at = self.reached.x.len() + interface.min(self.watched - 1);
-        let (rate, lane) = (self.program.outputs[at], self.program.lanes[at]);
+        let (rate, lane) = (self.program.output(at), self.program.lanes[at]);
         for (k, to) in into.iter_mut().enumerate() {
             *to = self.rows.coefficient(rate, k).lane(lane);
         }

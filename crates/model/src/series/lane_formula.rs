@@ -55,7 +55,9 @@ impl<T: Element> LaneFormula<T> {
         LaneFormula {
             compiled: Compiled::of(&rows, any),
             rows,
-            others: program.outputs[program.variables()..].to_vec(),
+            others: (program.variables()..program.outputs.len())
+                .map(|i| program.output(i))
+                .collect(),
         }
     }
 

@@ -2,6 +2,7 @@
 //!
 //! What is linear there is one sum of multiples of rows, however many operations it is written in.
 
+use super::constants::{Constant, Constants};
 use super::program::{Instruction, Operation, Program, Source};
 use crate::number::DoubleDouble;
 
@@ -14,7 +15,7 @@ pub(super) struct Term {
     pub row: usize,
     /// The lane that counts, in all lanes; `None` where each counts in its own.
     pub lane: Option<usize>,
-    pub factor: DoubleDouble,
+    pub factor: Constant,
     /// The row whose sign at the first order is a factor too.
     pub sign: Option<usize>,
 }
@@ -29,14 +30,14 @@ pub(super) enum Later {
         result: usize,
     },
     /// An operation, whose first operand is a multiple of the row that stands in its place.
-    Other(Instruction, Multiple),
+    Other(Instruction<Constant>, Multiple<Constant>),
 }
 
 /// A row that is a multiple of another, but for its first coefficient.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Multiple {
+pub(super) struct Multiple<C = DoubleDouble> {
     pub row: usize,
-    pub factor: DoubleDouble,
+    pub factor: C,
 }
 
 /// All of that, in order.
@@ -48,14 +49,14 @@ pub(super) struct LaterOrders {
 
 impl LaterOrders {
     /// Those of a program.
-    pub fn of(program: &Program) -> Self {
+    pub fn of(program: &Program, constants: &mut Constants) -> Self {
         let mut uses = vec![0_usize; program.rows()];
         let all = program.instructions().iter();
         let operands = all.flat_map(|one| one.operation.operands());
         operands.flatten().for_each(|row| uses[row] += 1);
         let mut sums: Vec<Option<Vec<Term>>> = vec![None; program.rows()];
         for instruction in program.instructions() {
-            let Some(plain) = terms(instruction.operation) else {
+            let Some(plain) = terms(instruction.operation, constants) else {
                 continue;
             };
             let mut all: Vec<Term> = Vec::new();
@@ -63,26 +64,27 @@ impl LaterOrders {
                 match &sums[term.row] {
                     // What is used once, or is but a multiple, has no row of its own.
                     Some(within) if within.len() == 1 || uses[term.row] == 1 => {
-                        match within.iter().map(|inner| joined(term, *inner)).collect() {
+                        let joined = |inner: &Term| joined(term, *inner, constants);
+                        match within.iter().map(joined).collect() {
                             Some::<Vec<Term>>(within) => {
-                                within.into_iter().for_each(|x| add(&mut all, x))
+                                within.into_iter().for_each(|x| add(&mut all, x, constants))
                             }
-                            None => add(&mut all, term),
+                            None => add(&mut all, term, constants),
                         }
                     }
-                    _ => add(&mut all, term),
+                    _ => add(&mut all, term, constants),
                 }
             }
             if all.len() > MOST_TERMS {
-                all = terms(instruction.operation).unwrap_or_default();
+                all = terms(instruction.operation, constants).unwrap_or_default();
             }
             sums[instruction.result] = Some(all);
         }
-        Self::needed(program, &sums)
+        Self::needed(program, &sums, constants)
     }
 
     /// Those whose results anything needs.
-    fn needed(program: &Program, sums: &[Option<Vec<Term>>]) -> Self {
+    fn needed(program: &Program, sums: &[Option<Vec<Term>>], constants: &mut Constants) -> Self {
         let mut needed = vec![false; program.rows()];
         for output in &program.outputs {
             if let Source::Row(row) = output {
@@ -93,7 +95,8 @@ impl LaterOrders {
         for row in [&program.kinks, &program.branch_points, &program.bases] {
             row.iter().for_each(|&row| needed[row] = true);
         }
-        let multiples = multiples(program, sums);
+        let one = constants.one();
+        let multiples = multiples(program, sums, constants);
         let mut kept = Vec::new();
         for instruction in program.instructions().iter().rev() {
             let second = instruction.second_result().is_some_and(|row| needed[row]);
@@ -103,7 +106,7 @@ impl LaterOrders {
             match &sums[instruction.result] {
                 Some(terms) => terms.iter().for_each(|term| needed[term.row] = true),
                 None => {
-                    let (plain, _) = with_multiple(*instruction, &multiples);
+                    let (plain, _) = with_multiple(*instruction, &multiples, one);
                     let operands = plain.operation.operands().into_iter();
                     operands.flatten().for_each(|row| needed[row] = true);
                 }
@@ -123,23 +126,23 @@ impl LaterOrders {
                     });
                 }
                 None => {
-                    let (plain, multiple) = with_multiple(instruction, &multiples);
+                    let (plain, multiple) = with_multiple(instruction, &multiples, one);
                     later.all.push(Later::Other(plain, multiple));
                 }
             }
         }
-        later.join_exponentials();
+        later.join_exponentials(constants);
         later
     }
 
     /// Makes e^a and e^-a in one operation: they take the same slopes of a.
-    fn join_exponentials(&mut self) {
+    fn join_exponentials(&mut self, constants: &mut Constants) {
         let mut at = 0;
         while at < self.all.len() {
             let (known, rest) = self.all.split_at_mut(at + 1);
             if let Later::Other(one, Multiple { factor, .. }) = &mut known[at]
                 && let Operation::Exponential(a) = one.operation
-                && let Some((place, falling)) = exponential(rest, a, -*factor)
+                && let Some((place, falling)) = inverse_exponential(rest, (a, *factor), constants)
             {
                 one.operation = Operation::Exponentials(a, falling);
                 self.all.remove(at + 1 + place);
@@ -149,11 +152,19 @@ impl LaterOrders {
     }
 }
 
-/// Where among these the exponential of this multiple of a row is made, and its row.
-fn exponential(all: &[Later], of: usize, multiple: DoubleDouble) -> Option<(usize, usize)> {
+/// Where among these the exponential of minus this multiple of a row is made, and its row.
+fn inverse_exponential(
+    all: &[Later],
+    (of, factor): (usize, Constant),
+    constants: &mut Constants,
+) -> Option<(usize, usize)> {
+    let mut negative = None;
     let result = |one: &Later| match one {
-        Later::Other(one, Multiple { factor, .. }) if *factor == multiple => {
-            (one.operation == Operation::Exponential(of)).then_some(one.result)
+        Later::Other(one, multiple) if one.operation == Operation::Exponential(of) => {
+            let negative = *negative.get_or_insert_with(|| constants.negative(factor));
+            constants
+                .are_same(multiple.factor, negative)
+                .then_some(one.result)
         }
         _ => None,
     };
@@ -165,31 +176,40 @@ fn exponential(all: &[Later], of: usize, multiple: DoubleDouble) -> Option<(usiz
 
 /// What every row is a multiple of, itself if of no other. Where the factor is no double, it must be that of the first order: rounded it
 /// would be another one at all other orders of all steps.
-fn multiples(program: &Program, sums: &[Option<Vec<Term>>]) -> Vec<Multiple> {
-    let factor = DoubleDouble::ONE;
+fn multiples(
+    program: &Program,
+    sums: &[Option<Vec<Term>>],
+    constants: &mut Constants,
+) -> Vec<Multiple<Constant>> {
+    let factor = constants.one();
     let itself = (0..program.rows()).map(|row| Multiple { row, factor });
-    let mut all: Vec<Multiple> = itself.collect();
+    let mut all: Vec<_> = itself.collect();
     for one in program.instructions() {
         let Some(&[term]) = sums[one.result].as_deref() else {
             continue;
         };
         let Term { row, factor, .. } = term;
-        let exact = factor.lo() == 0.0 || one.operation == Operation::Scaled(row, factor);
-        if exact && term.lane.is_none() && term.sign.is_none() {
+        if term.lane.is_none()
+            && term.sign.is_none()
+            && (one.operation == Operation::Scaled(row, factor) || constants.is_double(factor))
+        {
             all[one.result] = Multiple { row, factor };
         }
     }
     all
 }
 
-/// The operation with the row of which its first operand is a multiple in the place of that.
-fn with_multiple(one: Instruction, multiples: &[Multiple]) -> (Instruction, Multiple) {
+/// The operation with the row of which its first operand is a multiple in the place of that. The factor of what is no multiple is 1.
+fn with_multiple(
+    one: Instruction<Constant>,
+    multiples: &[Multiple<Constant>],
+    factor: Constant,
+) -> (Instruction<Constant>, Multiple<Constant>) {
     let operation = match one.operation {
         // Either may come first.
         Operation::Product(a, b) if multiples[a].row == a => Operation::Product(b, a),
         operation => operation,
     };
-    let factor = DoubleDouble::ONE;
     let (operand, of) = match (operation, operation.of_multiple()) {
         (Operation::Product(a, b), _) if a == b => (a, Multiple { row: a, factor }),
         (_, Some(operand)) => (operand, multiples[operand]),
@@ -211,8 +231,8 @@ fn with_multiple(one: Instruction, multiples: &[Multiple]) -> (Instruction, Mult
 }
 
 /// The terms of what is linear.
-fn terms(operation: Operation) -> Option<Vec<Term>> {
-    let one = DoubleDouble::from(1.0);
+fn terms(operation: Operation<Constant>, constants: &mut Constants) -> Option<Vec<Term>> {
+    let (one, minus_one) = (constants.one(), constants.minus_one());
     let term = |row, factor| Term {
         row,
         lane: None,
@@ -221,11 +241,11 @@ fn terms(operation: Operation) -> Option<Vec<Term>> {
     };
     Some(match operation {
         Operation::Sum(a, b) => vec![term(a, one), term(b, one)],
-        Operation::Difference(a, b) => vec![term(a, one), term(b, -one)],
-        Operation::Negative(a) | Operation::Complement(_, a) => vec![term(a, -one)],
+        Operation::Difference(a, b) => vec![term(a, one), term(b, minus_one)],
+        Operation::Negative(a) | Operation::Complement(_, a) => vec![term(a, minus_one)],
         Operation::Shifted(a, _) => vec![term(a, one)],
         Operation::Scaled(a, x) => vec![term(a, x)],
-        Operation::Over(a, x) => vec![term(a, one / x)],
+        Operation::Over(a, x) => vec![term(a, constants.quotient(one, x))],
         Operation::Lane(a, lane) => vec![Term {
             lane: Some(lane),
             ..term(a, one)
@@ -239,7 +259,7 @@ fn terms(operation: Operation) -> Option<Vec<Term>> {
 }
 
 /// A multiple of a multiple; `None` where that takes two signs, or the sign of another lane.
-fn joined(outer: Term, inner: Term) -> Option<Term> {
+fn joined(outer: Term, inner: Term, constants: &mut Constants) -> Option<Term> {
     let sign = match (outer.sign, inner.sign) {
         (Some(_), Some(_)) => return None,
         (_, Some(_)) if outer.lane.is_some() => return None,
@@ -248,17 +268,17 @@ fn joined(outer: Term, inner: Term) -> Option<Term> {
     Some(Term {
         row: inner.row,
         lane: inner.lane.or(outer.lane),
-        factor: outer.factor * inner.factor,
+        factor: constants.product(outer.factor, inner.factor),
         sign,
     })
 }
 
 /// A term more, as part of one that there is of the same.
-fn add(all: &mut Vec<Term>, term: Term) {
+fn add(all: &mut Vec<Term>, term: Term, constants: &mut Constants) {
     let alike =
         |known: &&mut Term| (known.row, known.lane, known.sign) == (term.row, term.lane, term.sign);
     match all.iter_mut().find(alike) {
-        Some(known) => known.factor = known.factor + term.factor,
+        Some(known) => known.factor = constants.sum(known.factor, term.factor),
         None => all.push(term),
     }
 }

@@ -72,13 +72,22 @@ impl Entries {
         from: usize,
         (rows, columns): (usize, usize),
     ) -> Vec<JacobianEntry> {
-        let all = program.outputs[from..][..rows * columns].iter().enumerate();
-        all.filter(|(_, series)| **series != Source::Number(DoubleDouble::ZERO))
+        let all = (0..rows * columns).map(|at| (at, program.output(from + at)));
+        all.filter(|(_, series)| *series != Source::Number(DoubleDouble::ZERO))
             .map(|(at, series)| JacobianEntry {
                 place: (at / columns, at % columns),
-                series: *series,
+                series,
             })
             .collect()
+    }
+
+    /// Whether these are the places of others too.
+    fn stand_as(&self, others: &Self) -> bool {
+        let alike = |these: &[JacobianEntry], those: &[JacobianEntry]| {
+            let place = |entry: &JacobianEntry| entry.place;
+            these.iter().map(place).eq(those.iter().map(place))
+        };
+        alike(&self.jacobian, &others.jacobian) && alike(&self.forcing, &others.forcing)
     }
 }
 
@@ -254,6 +263,24 @@ impl<T: Element, X: Element> NullaryFnOnce for AdvanceLinearised<'_, '_, T, X> {
 }
 
 impl<T: Element, X: Element> Trajectory for Linearised<'_, T, X> {
+    fn is_at(&self, parameters: &[f64]) -> bool {
+        self.solution.is_at(parameters)
+    }
+
+    fn set(&mut self, parameters: &[f64], own_factors: &[bool]) -> bool {
+        if !self.solution.set(parameters, own_factors) {
+            return false;
+        }
+        let (program, _) = self.solution.made();
+        let entries = Entries::of(program, self.columns.variables, self.parameters);
+        let stand = entries.stand_as(&self.entries);
+        if stand && let Some(compiled) = &mut self.compiled {
+            compiled.set((&entries.jacobian, &entries.forcing));
+        }
+        self.entries = entries;
+        stand
+    }
+
     fn start(&mut self, y: &[f64]) {
         self.solution.start(y);
         self.columns.start();

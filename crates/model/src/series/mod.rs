@@ -2,7 +2,8 @@
 //!
 //! A differential equation is a formula, written for any [`crate::number::Real`]: the laws' own, the same that give values and exact
 //! derivatives. Evaluated once, on numbers that write down what is done with them (`trace`), it becomes a list of operations
-//! (`program`), each with a recurrence that makes the next coefficient of its result from those of its operands. These recurrences run in
+//! (`program`), each with a recurrence that makes the next coefficient of its result from those of its operands. What is made of the
+//! parameters alone stands apart (`constants`), so that the list serves at other values of these. The recurrences run in
 //! loops (`interpreted`), and compiled to machine code once a formula has made enough steps (`compiled`).
 //!
 //! Recurrences that are written by hand for one kind of law take less time: those of most laws stand in `model::ageing_series`, for
@@ -21,6 +22,7 @@ mod columns;
 mod compiled;
 mod compiling;
 mod composition;
+mod constants;
 mod cubic;
 pub(crate) mod element;
 mod equations;

@@ -2,11 +2,13 @@
 //! computed at every order.
 
 use super::composition::Composition;
+use super::constants::{Constant, Constants};
 use super::element::Element;
-use super::later::{Later, LaterOrders, Multiple, Term};
+use super::later::{Later, Multiple, Term};
 use super::products::{SharedSums, Sums};
-use super::program::{Instruction, Operation};
+use super::program::{Instruction, Operation, Program};
 use crate::number::DoubleDouble;
+use std::ops::Range;
 
 /// An operation whose rows are where they begin among the coefficients, at all orders but the first.
 #[derive(Debug, Clone)]
@@ -92,35 +94,35 @@ pub(super) struct PlacedTerm<T> {
     pub sign: Option<usize>,
 }
 
-/// With rows of so many coefficients one after the other.
-pub(super) fn placed(one: &Instruction, room: usize) -> Instruction {
+/// With rows of so many coefficients one after the other, and with the constants as they are.
+pub(super) fn placed(
+    one: &Instruction<Constant>,
+    room: usize,
+    constants: &Constants,
+) -> Instruction {
     let place = |row: usize| row * room;
     Instruction {
-        operation: one.operation.moved(place),
+        operation: one.operation.map(place, |x| constants.value(x)),
         result: place(one.result),
         spare: place(one.spare),
     }
 }
 
 impl<T: Element> PlacedLater<T> {
-    /// The same of one of these; `any` is any number.
-    pub fn new(later: &Later, all: &LaterOrders, room: usize, any: T) -> Self {
+    /// The same of one of those of a program; `any` is any number.
+    pub fn new(later: &Later, program: &Program, room: usize, any: T) -> Self {
         match later {
-            Later::Sum { from, to, result } => {
-                let terms = all.terms[*from..*to].iter();
-                let terms = terms.flat_map(|term| PlacedTerm::new(term, room, any));
-                PlacedLater::Sum(PlacedSum {
-                    terms: terms.collect(),
-                    result: result * room,
-                    rate_of: None,
-                })
-            }
+            Later::Sum { from, to, result } => PlacedLater::Sum(PlacedSum {
+                terms: terms(program, *from..*to, room, any).collect(),
+                result: result * room,
+                rate_of: None,
+            }),
             Later::Other(one, operand) => {
                 let Instruction {
                     operation,
                     result,
                     spare,
-                } = placed(one, room);
+                } = placed(one, room, &program.constants);
                 let products = Products::of(operation, result, spare, room);
                 let shares = T::SHARES && matches!(products, Products::Shared(..));
                 PlacedLater::Other(PlacedInstruction {
@@ -129,7 +131,7 @@ impl<T: Element> PlacedLater<T> {
                     spare,
                     operand: Multiple {
                         row: operand.row * room,
-                        ..*operand
+                        factor: program.constants.value(operand.factor),
                     },
                     counts: [any; 2],
                     inverse: any,
@@ -145,10 +147,54 @@ impl<T: Element> PlacedLater<T> {
     }
 }
 
+impl<T: Element> PlacedLater<T> {
+    /// Takes over the constants of the program, of which this is one. Returns whether it has as many terms with them.
+    pub fn set(&mut self, later: &Later, program: &Program, room: usize, any: T) -> bool {
+        match (self, later) {
+            (PlacedLater::Sum(sum), Later::Sum { from, to, .. }) => {
+                let mut known = sum.terms.iter_mut();
+                let all = terms(program, *from..*to, room, any).all(|term| match known.next() {
+                    Some(known) if known.is_of(&term) => {
+                        *known = term;
+                        true
+                    }
+                    _ => false,
+                });
+                all && known.next().is_none()
+            }
+            (PlacedLater::Other(known), Later::Other(one, operand)) => {
+                known.operation = placed(one, room, &program.constants).operation;
+                known.operand.factor = program.constants.value(operand.factor);
+                true
+            }
+            _ => unreachable!("of the same program"),
+        }
+    }
+}
+
+/// Those of a sum that stand there among the terms of a program.
+fn terms<T: Element>(
+    program: &Program,
+    within: Range<usize>,
+    room: usize,
+    any: T,
+) -> impl Iterator<Item = PlacedTerm<T>> {
+    let terms = program.later.terms[within].iter();
+    terms.flat_map(move |term| {
+        let factor = program.constants.value(term.factor);
+        PlacedTerm::new(term, factor, room, any)
+    })
+}
+
 impl<T: Element> PlacedTerm<T> {
+    /// Whether it is a multiple of the same.
+    fn is_of(&self, other: &Self) -> bool {
+        (self.row, self.lane, self.sign) == (other.row, other.lane, other.sign)
+    }
+
     /// The term, and one more with what the element's digits leave of its factor: rounded it would be another one at all orders of all
     /// steps.
-    fn new(term: &Term, room: usize, any: T) -> impl Iterator<Item = Self> {
+    fn new(term: &Term, factor: DoubleDouble, room: usize, any: T) -> impl Iterator<Item = Self> {
         let of = |exact: DoubleDouble| PlacedTerm {
             row: term.row * room,
             lane: term.lane,
@@ -156,8 +202,8 @@ impl<T: Element> PlacedTerm<T> {
             factor: any.like_exact(exact),
             sign: term.sign.map(|row| row * room),
         };
-        let first = of(term.factor);
-        let rest = term.factor - first.factor.to_exact();
+        let first = of(factor);
+        let rest = factor - first.factor.to_exact();
         // What counts least comes first in the sum.
         let rest = (rest.hi() != 0.0).then(|| of(rest));
         rest.into_iter().chain([first])

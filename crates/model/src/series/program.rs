@@ -1,24 +1,34 @@
 //! A recorded formula on power series: one coefficient of all its quantities after the other.
 //!
-//! What depends on the variables has a row of coefficients; everything else is a number. The recurrences run in loops over the
+//! What depends on the variables has a row of coefficients; everything else is a number, which the program knows by its place among its
+//! [`Constants`]: it holds at other values of the parameters too. The recurrences run in loops over the
 //! operations ([`super::program_rows`]) instead of compiled one by one: for any number of variables, for numbers of any kind, and no
 //! code for each formula.
 
-use super::later::LaterOrders;
+use super::constants::{Constant, Constants};
+use super::later::{Later, LaterOrders};
 use crate::number::{Balance, DoubleDouble, Ratio};
-#[cfg(target_arch = "x86_64")]
-use std::sync::{Arc, OnceLock};
 
 /// A quantity: a number, or the row of its coefficients.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Source {
-    Number(DoubleDouble),
+pub(super) enum Source<C = DoubleDouble> {
+    Number(C),
     Row(usize),
+}
+
+impl<C> Source<C> {
+    /// The same with another kind of numbers, of rows that stand elsewhere.
+    pub fn map<D>(self, at: impl FnOnce(usize) -> usize, number: impl FnOnce(C) -> D) -> Source<D> {
+        match self {
+            Source::Number(x) => Source::Number(number(x)),
+            Source::Row(row) => Source::Row(at(row)),
+        }
+    }
 }
 
 /// How a row comes from others.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Operation {
+pub(super) enum Operation<C = DoubleDouble> {
     /// One lane of a row, in both.
     #[cfg_attr(not(target_arch = "x86_64"), allow(dead_code))]
     Lane(usize, usize),
@@ -26,16 +36,16 @@ pub(super) enum Operation {
     Difference(usize, usize),
     Negative(usize),
     /// a + x
-    Shifted(usize, DoubleDouble),
+    Shifted(usize, C),
     /// x - a
-    Complement(DoubleDouble, usize),
+    Complement(C, usize),
     /// a x
-    Scaled(usize, DoubleDouble),
+    Scaled(usize, C),
     /// a / x
-    Over(usize, DoubleDouble),
+    Over(usize, C),
     Product(usize, usize),
     /// a / b; the spare row holds 1 / b_0
-    Quotient(Source, usize),
+    Quotient(Source<C>, usize),
     /// the spare row holds j a_j
     Exponential(usize),
     /// e^a and, in that row, e^-a; the spare row holds j a_j
@@ -56,20 +66,20 @@ pub(super) enum Operation {
     /// tanh a and, in that row, 1 - tanh^2 a; the spare row holds j a_j
     HyperbolicTangent(usize, usize),
     /// a^p; the spare row holds 1 / a_0, then j y_j
-    Power(usize, DoubleDouble),
+    Power(usize, C),
     /// N(a)/a, or a derivative of it
     Ratio(usize, Ratio),
     Sign(usize),
     Signed(usize, usize),
     /// The y of y + g(y) = a. Before it stand exp y and exp(-y), or sinh y and cosh y, g'(y_0), what the newest coefficients of g count, and g(y); the spare row
     /// holds 1 / (1 + g'(y_0)), then j y_j.
-    Balanced(Source, Balance<Source>),
+    Balanced(Source<C>, Balance<Source<C>>),
 }
 
-impl Operation {
+impl<C: Copy> Operation<C> {
     /// The rows whose coefficients it needs at the order of its result.
     pub fn operands(self) -> [Option<usize>; 3] {
-        let row = |source: Source| match source {
+        let row = |source: Source<C>| match source {
             Source::Row(row) => Some(row),
             Source::Number(_) => None,
         };
@@ -124,27 +134,25 @@ impl Operation {
     }
 
     /// The same of rows that stand elsewhere.
-    pub fn moved(self, mut at: impl FnMut(usize) -> usize) -> Self {
+    pub fn moved(self, at: impl FnMut(usize) -> usize) -> Self {
+        self.map(at, |x| x)
+    }
+
+    /// The same of rows that stand elsewhere, with another kind of numbers.
+    pub fn map<D>(
+        self,
+        mut at: impl FnMut(usize) -> usize,
+        mut number: impl FnMut(C) -> D,
+    ) -> Operation<D> {
         use Operation::*;
-        let mut source = |source: Source| match source {
-            Source::Row(row) => Source::Row(at(row)),
-            number => number,
-        };
-        match self {
-            Balanced(x, g) => {
-                let x = source(x);
-                return Balanced(x, g.map(source));
-            }
-            Quotient(a, b) => {
-                let a = source(a);
-                return Quotient(a, at(b));
-            }
-            _ => {}
-        }
         match self {
             Sum(a, b) => Sum(at(a), at(b)),
             Difference(a, b) => Difference(at(a), at(b)),
             Product(a, b) => Product(at(a), at(b)),
+            Quotient(a, b) => {
+                let a = a.map(&mut at, number);
+                Quotient(a, at(b))
+            }
             ExponentialLessOne(a, b) => ExponentialLessOne(at(a), at(b)),
             LogarithmOfOneMore(a, b) => LogarithmOfOneMore(at(a), at(b)),
             Arctangent(a, b) => Arctangent(at(a), at(b)),
@@ -155,23 +163,28 @@ impl Operation {
             Circular(a, b) => Circular(at(a), at(b)),
             HyperbolicTangent(a, b) => HyperbolicTangent(at(a), at(b)),
             Negative(a) => Negative(at(a)),
-            Shifted(a, x) => Shifted(at(a), x),
-            Complement(x, a) => Complement(x, at(a)),
-            Scaled(a, x) => Scaled(at(a), x),
-            Over(a, x) => Over(at(a), x),
+            Shifted(a, x) => Shifted(at(a), number(x)),
+            Complement(x, a) => Complement(number(x), at(a)),
+            Scaled(a, x) => Scaled(at(a), number(x)),
+            Over(a, x) => Over(at(a), number(x)),
             Exponential(a) => Exponential(at(a)),
             Logarithm(a) => Logarithm(at(a)),
-            Power(a, p) => Power(at(a), p),
+            Power(a, p) => Power(at(a), number(p)),
             Ratio(a, ratio) => Ratio(at(a), ratio),
             Sign(a) => Sign(at(a)),
             Lane(a, lane) => Lane(at(a), lane),
-            Balanced(..) | Quotient(..) => unreachable!("moved above"),
+            Balanced(x, g) => {
+                let x = x.map(&mut at, &mut number);
+                Balanced(x, g.map(|c| c.map(&mut at, &mut number)))
+            }
         }
     }
+}
 
+#[cfg(target_arch = "x86_64")]
+impl Operation<Constant> {
     /// Whether this makes what the other one would, of the same operands; the row that either makes beside its result does not count.
-    #[cfg(target_arch = "x86_64")]
-    pub fn is_like(self, other: Self) -> bool {
+    pub fn is_like(self, other: Self, constants: &mut Constants) -> bool {
         use Operation::*;
         match (self, other) {
             (Balanced(..), _) => false,
@@ -181,6 +194,14 @@ impl Operation {
             (Sum(a, b), Sum(c, d)) | (Product(a, b), Product(c, d)) => {
                 (a, b) == (c, d) || (a, b) == (d, c)
             }
+            (Shifted(a, x), Shifted(b, y))
+            | (Complement(x, a), Complement(y, b))
+            | (Scaled(a, x), Scaled(b, y))
+            | (Over(a, x), Over(b, y))
+            | (Power(a, x), Power(b, y))
+            | (Quotient(Source::Number(x), a), Quotient(Source::Number(y), b)) => {
+                a == b && constants.are_same(x, y)
+            }
             _ => self == other,
         }
     }
@@ -188,13 +209,13 @@ impl Operation {
 
 /// An operation, the row of its result, and one that it may use.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Instruction {
-    pub operation: Operation,
+pub(super) struct Instruction<C = DoubleDouble> {
+    pub operation: Operation<C>,
     pub result: usize,
     pub spare: usize,
 }
 
-impl Instruction {
+impl<C> Instruction<C> {
     /// The row that it makes beside its result.
     pub fn second_result(self) -> Option<usize> {
         match self.operation {
@@ -211,11 +232,12 @@ impl Instruction {
 /// The operations of a formula, whose variables stand in the first rows.
 #[derive(Debug, Clone)]
 pub(super) struct Program {
-    instructions: Vec<Instruction>,
+    instructions: Vec<Instruction<Constant>>,
+    pub constants: Constants,
     variables: usize,
     rows: usize,
     /// What the formula gives, in the order in which it was asked for.
-    pub outputs: Vec<Source>,
+    pub outputs: Vec<Source<Constant>>,
     /// The lane of each of these, of those that have but one.
     pub lanes: Vec<usize>,
     /// The row of each variable, and its lane there.
@@ -232,16 +254,14 @@ pub(super) struct Program {
     pub branch_points: Vec<usize>,
     /// Whether it holds only where it was recorded, as the formula asks for values.
     pub branches: bool,
-    /// The same in two lanes, once that was asked for: of copies as well.
-    #[cfg(target_arch = "x86_64")]
-    pub two_lanes: Arc<OnceLock<Option<Program>>>,
 }
 
 impl Program {
-    /// Nothing yet, in so many variables.
-    pub fn empty(variables: usize) -> Self {
+    /// Nothing yet, in so many variables and of these constants.
+    pub fn empty(variables: usize, constants: Constants) -> Self {
         Program {
             instructions: Vec::new(),
+            constants,
             variables,
             rows: variables,
             outputs: Vec::new(),
@@ -253,8 +273,6 @@ impl Program {
             bases: Vec::new(),
             branch_points: Vec::new(),
             branches: false,
-            #[cfg(target_arch = "x86_64")]
-            two_lanes: Arc::default(),
         }
     }
 
@@ -275,12 +293,12 @@ impl Program {
     }
 
     /// An operation more.
-    pub fn push(&mut self, instruction: Instruction) {
+    pub fn push(&mut self, instruction: Instruction<Constant>) {
         self.instructions.push(instruction);
     }
 
     /// The operations, in an order in which they can be carried out.
-    pub fn instructions(&self) -> &[Instruction] {
+    pub fn instructions(&self) -> &[Instruction<Constant>] {
         &self.instructions
     }
 
@@ -298,11 +316,38 @@ impl Program {
         }
         self.instructions
             .sort_by_key(|instruction| depths[instruction.result]);
-        self.later = LaterOrders::of(self);
+        let mut constants = std::mem::take(&mut self.constants);
+        self.later = LaterOrders::of(self, &mut constants);
+        self.constants = constants;
     }
 
-    /// Those of the operations that the rates of the variables need.
-    pub fn of_rates(&self) -> Vec<Instruction> {
+    /// Whether parameters are part of the constants of an operation.
+    pub fn varies(&self, operation: Operation<Constant>) -> bool {
+        let mut varies = false;
+        operation.map(|row| row, |x| varies |= self.constants.varies(x));
+        varies
+    }
+
+    /// The same of what is carried out at later orders.
+    pub fn varies_later(&self, later: &Later) -> bool {
+        match later {
+            Later::Sum { from, to, .. } => {
+                let mut terms = self.later.terms[*from..*to].iter();
+                terms.any(|term| self.constants.varies(term.factor))
+            }
+            Later::Other(one, multiple) => {
+                self.varies(one.operation) || self.constants.varies(multiple.factor)
+            }
+        }
+    }
+
+    /// An output, with its value where it is a number.
+    pub fn output(&self, i: usize) -> Source {
+        self.outputs[i].map(|row| row, |x| self.constants.value(x))
+    }
+
+    /// The places of those of the operations that the rates of the variables need.
+    pub fn of_rates(&self) -> Vec<usize> {
         let mut needed = vec![false; self.rows];
         for rate in &self.outputs[..self.variables] {
             if let Source::Row(row) = *rate {
@@ -310,17 +355,26 @@ impl Program {
             }
         }
         let mut found = Vec::new();
-        for one in self.instructions.iter().rev() {
+        for (place, one) in self.instructions.iter().enumerate().rev() {
             let second = one.second_result().is_some_and(|row| needed[row]);
             if needed[one.result] || second || matches!(one.operation, Operation::Balanced(..)) {
                 for row in one.operation.operands().into_iter().flatten() {
                     needed[row] = true;
                 }
-                found.push(*one);
+                found.push(place);
             }
         }
         found.reverse();
         found
+    }
+
+    /// Whether the variables of a row are counted relative to their size alone, as one of them is a factor of its own rate.
+    pub fn relative(&self) -> Vec<bool> {
+        let mut relative = vec![false; self.variables];
+        for (&(row, _), &factor) in self.places.iter().zip(&self.own_factors) {
+            relative[row] |= factor;
+        }
+        relative
     }
 
     /// Rows that it takes.

@@ -17,11 +17,14 @@ pub(super) struct ProgramRows<T: Element> {
     inverses: Vec<DoubleDouble>,
     /// The operations of the first order and of all later ones; rows are where they begin among the coefficients.
     first: Vec<Instruction>,
-    /// Those of the first order that the rates need.
-    first_of_rates: Vec<Instruction>,
+    /// The places of those of the first order that the rates need.
+    of_rates: Vec<usize>,
     later: Vec<PlacedLater<T>>,
     /// Those of the later ones for which the first coefficients count.
     prepared: Vec<usize>,
+    /// The places, among those of the first order and the later ones, of those whose constants parameters are part of.
+    varying_first: Vec<usize>,
+    varying_later: Vec<usize>,
     /// The rates of the variables, and those that are no sums at later orders.
     rates: Vec<Rate>,
     rates_apart: Vec<Rate>,
@@ -58,17 +61,21 @@ impl<T: Element> ProgramRows<T> {
     /// With room for these; `any` is any number.
     pub fn new(program: &Program, room: usize, any: T) -> Self {
         let first = program.instructions().iter();
-        let later = program.later.all.iter();
+        // None where there is room for the first coefficients alone.
+        let later = if room > 1 {
+            &program.later.all[..]
+        } else {
+            &[]
+        };
         let mut later: Vec<_> = later
-            .map(|one| PlacedLater::new(one, &program.later, room, any))
+            .iter()
+            .map(|one| PlacedLater::new(one, program, room, any))
             .collect();
-        let rates = program.outputs[..program.variables()].iter().enumerate();
-        let rates: Vec<_> = rates
-            .map(|(variable, rate)| Rate {
-                variable,
-                of: *rate,
-            })
-            .collect();
+        let rate = |variable| Rate {
+            variable,
+            of: program.output(variable),
+        };
+        let rates: Vec<_> = (0..program.variables()).map(rate).collect();
         let apart = rates
             .iter()
             .filter(|rate| !rate.joined_to(&mut later, room));
@@ -83,11 +90,15 @@ impl<T: Element> ProgramRows<T> {
             inverses: (0..room)
                 .map(|k| DoubleDouble::from(1.0) / k as f64)
                 .collect(),
-            first: first.map(|one| placed(one, room)).collect(),
-            first_of_rates: program
-                .of_rates()
-                .iter()
-                .map(|one| placed(one, room))
+            first: first
+                .map(|one| placed(one, room, &program.constants))
+                .collect(),
+            of_rates: program.of_rates(),
+            varying_first: (0..program.instructions().len())
+                .filter(|&i| program.varies(program.instructions()[i].operation))
+                .collect(),
+            varying_later: (0..later.len())
+                .filter(|&i| program.varies_later(&program.later.all[i]))
                 .collect(),
             rates_apart,
             prepared: (0..later.len())
@@ -99,10 +110,31 @@ impl<T: Element> ProgramRows<T> {
         }
     }
 
+    /// Takes over the constants of the program, which is theirs but for these. Returns whether all stands where it did.
+    pub fn set(&mut self, program: &Program) -> bool {
+        for &i in &self.varying_first {
+            self.first[i] = placed(&program.instructions()[i], self.room, &program.constants);
+        }
+        for rate in self.rates.iter_mut().chain(&mut self.rates_apart) {
+            rate.of = program.output(rate.variable);
+        }
+        let mut later = self.varying_later.iter();
+        later.all(|&i| {
+            let one = &program.later.all[i];
+            self.later[i].set(one, program, self.room, self.any)
+        })
+    }
+
     /// The coefficients of a row.
     #[inline(always)]
     pub fn row(&self, row: usize) -> &[T] {
         &self.coefficients[row * self.room..][..self.room]
+    }
+
+    /// The rate of a variable where the series begin.
+    #[inline(always)]
+    pub fn rate(&self, variable: usize) -> T {
+        self.coefficient(self.rates[variable].of, 0)
     }
 
     /// The k-th coefficient of a quantity.
@@ -159,6 +191,11 @@ impl<T: Element> ProgramRows<T> {
         &self.later
     }
 
+    /// Those of the later ones whose constants parameters are part of.
+    pub fn varying(&self) -> &[usize] {
+        &self.varying_later
+    }
+
     /// The rates that are no sums.
     pub fn rates_apart(&self) -> &[Rate] {
         &self.rates_apart
@@ -178,29 +215,37 @@ impl<T: Element> ProgramRows<T> {
     /// The first coefficients at this state.
     #[inline(always)]
     pub fn begin(&mut self, x: &[T]) {
-        self.begin_by(x, |rows| &mut rows.first);
-    }
-
-    /// Those of the rates at this state, and of what they need.
-    #[inline(always)]
-    pub fn begin_rates(&mut self, x: &[T]) {
-        self.begin_by(x, |rows| &mut rows.first_of_rates);
-    }
-
-    /// Those that these operations make at this state.
-    #[inline(always)]
-    fn begin_by(&mut self, x: &[T], by: impl Fn(&mut Self) -> &mut Vec<Instruction>) {
-        let rows = self.coefficients.chunks_exact_mut(self.room);
-        for (row, x) in rows.zip(x) {
-            row[0] = *x;
-        }
-        let operations = std::mem::take(by(self));
+        self.begin_variables(x);
+        let operations = std::mem::take(&mut self.first);
         let (mut level, _) = self.order(0);
         // A loop, as all here: a closure would not be compiled for the processor.
         for one in &operations {
             level.begin(one);
         }
-        *by(self) = operations;
+        self.first = operations;
+    }
+
+    /// Those of the rates at this state, and of what they need.
+    #[inline(always)]
+    pub fn begin_rates(&mut self, x: &[T]) {
+        self.begin_variables(x);
+        let operations = (
+            std::mem::take(&mut self.first),
+            std::mem::take(&mut self.of_rates),
+        );
+        let (mut level, _) = self.order(0);
+        for &place in &operations.1 {
+            level.begin(&operations.0[place]);
+        }
+        (self.first, self.of_rates) = operations;
+    }
+
+    #[inline(always)]
+    fn begin_variables(&mut self, x: &[T]) {
+        let rows = self.coefficients.chunks_exact_mut(self.room);
+        for (row, x) in rows.zip(x) {
+            row[0] = *x;
+        }
     }
 
     /// The first coefficients of other rows of the same program.

@@ -1,14 +1,14 @@
 //! The formulas of the last solutions: recording them anew, and making room for the series, takes longer than a short arc.
 //!
 //! The arcs of an orbit are solutions of one formula at the same parameters, and so are runs from several starts: a solution that is done with
-//! begins anew elsewhere. Along a branch the parameters change from one orbit to the next: the recorded formula stays, and its program is made
-//! of it at the new values.
+//! begins anew elsewhere. Along a branch the parameters change from one orbit to the next: solutions take over the new values, and are made
+//! anew only where a value decides what there is to compute ([`super::constants`]).
 
 use super::assembly::RecordedFormula;
 use super::interpreted::Trajectory;
 use super::program::Program;
 use crate::expression::Expressions;
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -22,56 +22,48 @@ const LONGEST: usize = 2000;
 /// Formulas at given parameters, and the places of the parameters in which they are differentiated.
 #[derive(Debug, Clone)]
 pub(super) struct Formulas<'a> {
-    pub rates: &'a Expressions,
-    pub slip_rates: Option<&'a Expressions>,
+    pub rates: &'a Arc<Expressions>,
+    pub slip_rates: Option<&'a Arc<Expressions>>,
     pub variables: usize,
     pub parameters: &'a [f64],
     pub free: Option<Vec<usize>>,
+    /// For each variable whether it is a factor of its own rate, once that was asked for.
+    pub own_factors: OnceCell<Vec<bool>>,
 }
 
-/// The same, kept with its program.
+/// The same, kept with its program at the parameters of the last solution that was made of it.
 struct Kept {
-    rates: Expressions,
-    slip_rates: Option<Expressions>,
+    rates: Arc<Expressions>,
+    slip_rates: Option<Arc<Expressions>>,
     variables: usize,
-    /// By their bits.
-    parameters: Vec<u64>,
     free: Option<Vec<usize>>,
-    recorded: Arc<RecordedFormula>,
+    recorded: RecordedFormula,
     program: Program,
     number: usize,
     idle: Vec<Box<dyn Trajectory>>,
 }
 
 thread_local! {
-    /// The newest last.
+    /// The one used last is the last.
     static RECENT: RefCell<Vec<Kept>> = const { RefCell::new(Vec::new()) };
 }
 
 impl Formulas<'_> {
     /// The program of these formulas, recorded by `record` if they are not among the last. Those that hold only where they were recorded are
     /// recorded each time.
-    pub fn program(
-        &self,
-        record: impl FnOnce() -> RecordedFormula,
-        own_factors: impl FnOnce() -> Vec<bool>,
-    ) -> Program {
-        let known = RECENT.with_borrow(|all| {
-            let at_these = all.iter().rev().find(|kept| kept.is_of(self));
-            at_these.map(|kept| kept.program.clone())
+    pub fn program(&self, record: impl FnOnce() -> RecordedFormula) -> Program {
+        let known = self.kept_ones(|kept| {
+            kept.set(self);
+            kept.program.clone()
         });
         if let Some(program) = known {
             return program;
         }
-        let recorded = RECENT.with_borrow(|all| {
-            let of_these = all.iter().rev().find(|kept| kept.is_of_formulas(self));
-            of_these.map(|kept| Arc::clone(&kept.recorded))
-        });
-        let recorded = recorded.unwrap_or_else(|| Arc::new(record()));
+        let recorded = record();
         let mut program = recorded.program(self.parameters);
-        program.own_factors = own_factors();
+        program.own_factors.clone_from(self.own_factors());
         if !program.branches && program.instructions().len() <= LONGEST {
-            let kept = Kept::new(self, recorded, &program);
+            let kept = Kept::new(self, recorded, program.clone());
             RECENT.with_borrow_mut(|all| {
                 if all.len() == KEPT {
                     all.remove(0);
@@ -84,22 +76,29 @@ impl Formulas<'_> {
 
     /// A solution of these formulas that is done with, if there is one.
     pub fn idle(&self) -> Option<Reused<'static>> {
-        RECENT.with_borrow_mut(|all| {
-            let kept = all.iter_mut().rev().find(|kept| kept.is_of(self))?;
-            Some(Reused::Kept(Some(kept.idle.pop()?), kept.number))
-        })
+        self.kept_ones(|kept| Some(Reused::Kept(Some(kept.take(self)?), kept.number)))?
     }
 
     /// This solution, to be used again when it is done with. It holds for any start.
     pub fn kept(&self, solution: Box<dyn Trajectory>) -> Reused<'static> {
-        let number = RECENT.with_borrow(|all| {
-            let kept = all.iter().rev().find(|kept| kept.is_of(self));
-            kept.map(|kept| kept.number)
-        });
-        match number {
+        match self.kept_ones(|kept| kept.number) {
             Some(number) => Reused::Kept(Some(solution), number),
             None => Reused::Once(solution),
         }
+    }
+
+    /// What is made of the kept ones, if they are.
+    fn kept_ones<X>(&self, make: impl FnOnce(&mut Kept) -> X) -> Option<X> {
+        RECENT.with_borrow_mut(|all| {
+            let place = all.iter().rposition(|kept| kept.is_of(self))?;
+            all[place..].rotate_left(1);
+            all.last_mut().map(make)
+        })
+    }
+
+    fn own_factors(&self) -> &Vec<bool> {
+        self.own_factors
+            .get_or_init(|| self.rates.own_factors(self.variables, self.parameters))
     }
 }
 
@@ -148,31 +147,52 @@ impl Drop for Reused<'_> {
 }
 
 impl Kept {
-    fn new(of: &Formulas<'_>, recorded: Arc<RecordedFormula>, program: &Program) -> Self {
+    fn new(of: &Formulas<'_>, recorded: RecordedFormula, program: Program) -> Self {
         /// Numbers hold for all threads: solutions may move from one to another.
         static NEXT: AtomicUsize = AtomicUsize::new(0);
         Kept {
-            rates: of.rates.clone(),
+            rates: Arc::clone(of.rates),
             slip_rates: of.slip_rates.cloned(),
             variables: of.variables,
-            parameters: of.parameters.iter().map(|x| x.to_bits()).collect(),
             free: of.free.clone(),
             recorded,
-            program: program.clone(),
+            program,
             number: NEXT.fetch_add(1, Ordering::Relaxed),
             idle: Vec::new(),
         }
     }
 
     fn is_of(&self, of: &Formulas<'_>) -> bool {
-        let parameters = of.parameters.iter().map(|x| x.to_bits());
-        self.parameters.iter().copied().eq(parameters) && self.is_of_formulas(of)
-    }
-
-    fn is_of_formulas(&self, of: &Formulas<'_>) -> bool {
+        // What is shared is not looked into.
         self.variables == of.variables
             && self.free == of.free
             && self.rates == *of.rates
             && self.slip_rates.as_ref() == of.slip_rates
+    }
+
+    /// Makes the program the one at these parameters.
+    fn set(&mut self, of: &Formulas<'_>) {
+        let constants = &mut self.program.constants;
+        if constants.are_at(of.parameters) {
+            return;
+        }
+        if !constants.set(of.parameters) {
+            self.program = self.recorded.program(of.parameters);
+        }
+        self.program.own_factors.clone_from(of.own_factors());
+    }
+
+    /// A solution that is done with, made the one at these parameters. Those that can't be are dropped.
+    fn take(&mut self, of: &Formulas<'_>) -> Option<Box<dyn Trajectory>> {
+        let mut idle = self.idle.iter();
+        if let Some(place) = idle.rposition(|one| one.is_at(of.parameters)) {
+            return Some(self.idle.swap_remove(place));
+        }
+        while let Some(mut solution) = self.idle.pop() {
+            if solution.set(of.parameters, of.own_factors()) {
+                return Some(solution);
+            }
+        }
+        None
     }
 }

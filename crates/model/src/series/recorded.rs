@@ -20,6 +20,7 @@ use crate::expression::Expressions;
 use crate::number::{DoubleDouble, Real};
 use std::cell::OnceCell;
 use std::ops::{Deref, DerefMut};
+use std::sync::Arc;
 
 const REFERENCE_ROOM: usize = REFERENCE_ORDER + 1;
 
@@ -107,13 +108,16 @@ impl<'a> Recording<'a> {
     }
 }
 
-fn solution_of<'b>((program, record): Anew<'b>, (watched, ..): Kind) -> Box<dyn Trajectory + 'b> {
+#[cfg_attr(not(target_arch = "x86_64"), allow(unused_mut))]
+fn solution_of<'b>(
+    (mut program, record): Anew<'b>,
+    (watched, ..): Kind,
+) -> Box<dyn Trajectory + 'b> {
     #[cfg(target_arch = "x86_64")]
     if let Some(simd) = avx2()
         && let Some(program) = program.in_two_lanes()
     {
         let any = Pair::new(simd, [0.0; 2]);
-        let program = program.clone();
         return Box::new(Interpreted::new((program, record), watched, ROOM, any));
     }
     Box::new(Interpreted::new((program, record), watched, ROOM, 0.0))
@@ -282,9 +286,9 @@ impl<'a, S: Equations<N, P> + 'a, const N: usize, const P: usize> ByRecording<'a
 #[derive(Debug, Clone, Copy)]
 pub struct RecordedExpressions<'a, const N: usize> {
     /// The right-hand sides, N of them at most, and as many variables.
-    pub rates: &'a Expressions,
+    pub rates: &'a Arc<Expressions>,
     /// The slip rates of the interfaces, where there are any: one or two.
-    pub slip_rates: Option<&'a Expressions>,
+    pub slip_rates: Option<&'a Arc<Expressions>>,
     /// The parameters.
     pub parameters: &'a [f64],
 }
@@ -302,13 +306,14 @@ impl<'a, const N: usize> ByRecording<'a, N> for RecordedExpressions<'a, N> {
 }
 
 /// The formulas at a state, in one lane and, where they have two parts that are alike, in two: to be run in loops and compiled, for tests.
+#[cfg_attr(not(target_arch = "x86_64"), allow(unused_mut))]
 pub fn both_ways(
-    rates: &Expressions,
+    rates: &Arc<Expressions>,
     parameters: &[f64],
     (state, free): (&[f64], Option<&[usize]>),
 ) -> Vec<Box<dyn BothWays>> {
     let recording = Recording::of_expressions((rates, None), state.len(), parameters, free);
-    let program = (recording.record)(state);
+    let mut program = (recording.record)(state);
     let mut all = Vec::new();
     all.extend(compiled::both_ways(&program, ROOM, (state.to_vec(), 0.0)));
     #[cfg(target_arch = "x86_64")]
@@ -324,7 +329,7 @@ pub fn both_ways(
                 lanes[row].with_lane(lane, x)
             };
         }
-        all.extend(compiled::both_ways(program, ROOM, (lanes, any)));
+        all.extend(compiled::both_ways(&program, ROOM, (lanes, any)));
     }
     all
 }
@@ -332,7 +337,7 @@ pub fn both_ways(
 /// The series of the derivatives of the formulas' solution at a state, in its components and in the parameters of these places, in loops and
 /// compiled, for tests; `None` where they are not compiled.
 pub fn columns_both_ways(
-    rates: &Expressions,
+    rates: &Arc<Expressions>,
     parameters: &[f64],
     (state, free): (&[f64], &[usize]),
     (order, unit): (usize, f64),
@@ -352,7 +357,7 @@ pub fn columns_both_ways(
 impl<'a> Recording<'a> {
     /// As of [`ByRecording::recording`].
     fn of_expressions(
-        (rates, slip_rates): (&'a Expressions, Option<&'a Expressions>),
+        (rates, slip_rates): (&'a Arc<Expressions>, Option<&'a Arc<Expressions>>),
         variables: usize,
         parameters: &'a [f64],
         free: Option<&[usize]>,
@@ -363,10 +368,10 @@ impl<'a> Recording<'a> {
             variables,
             parameters,
             free: free.map(<[usize]>::to_vec),
+            own_factors: OnceCell::new(),
         };
-        let own_factors = OnceCell::new();
         Recording {
-            slip_rates: slip_rates.map_or(0, Expressions::count),
+            slip_rates: slip_rates.map_or(0, |all| all.count()),
             symmetric: false,
             variables,
             free: free.map_or(0, <[usize]>::len),
@@ -385,8 +390,7 @@ impl<'a> Recording<'a> {
                     let all = (&made[..], &slip_rates[..]);
                     formula(&graph, all, formulas.free.as_deref())
                 };
-                let factors = || rates.own_factors(variables, parameters);
-                formulas.program(record, || own_factors.get_or_init(factors).clone())
+                formulas.program(record)
             }),
         }
     }

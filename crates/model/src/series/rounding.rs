@@ -13,7 +13,8 @@ pub(super) fn rounding(program: &Program, value: impl Fn(usize) -> f64) -> Vec<f
     }
     for one in program.instructions() {
         let (result, size) = (one.result, |row: usize| value(row).abs());
-        let of = |source: Source| match source {
+        let constant = |x| program.constants.value(x).hi().abs();
+        let of = |source: Source<_>| match source {
             Source::Row(row) => off[row],
             Source::Number(_) => 0.0,
         };
@@ -23,8 +24,8 @@ pub(super) fn rounding(program: &Program, value: impl Fn(usize) -> f64) -> Vec<f
             }
             Operation::Sum(a, b) | Operation::Difference(a, b) => (off[a] + off[b], 0.0),
             Operation::Shifted(a, _) | Operation::Complement(_, a) => (off[a], 0.0),
-            Operation::Scaled(a, x) => (off[a] * x.hi().abs(), 0.0),
-            Operation::Over(a, x) => (off[a] / x.hi().abs(), 0.0),
+            Operation::Scaled(a, x) => (off[a] * constant(x), 0.0),
+            Operation::Over(a, x) => (off[a] / constant(x), 0.0),
             Operation::Product(a, b) => (size(a) * off[b] + size(b) * off[a], 0.0),
             Operation::Quotient(a, b) => ((of(a) + size(result) * off[b]) / size(b), 0.0),
             Operation::Exponential(a) => (size(result) * off[a], 0.0),
@@ -41,7 +42,7 @@ pub(super) fn rounding(program: &Program, value: impl Fn(usize) -> f64) -> Vec<f
             Operation::HyperbolicTangent(a, u) => {
                 (size(u) * off[a], size(u) * (2.0 * off[a] + 4.0 * UNIT))
             }
-            Operation::Power(a, p) => (p.hi().abs() * size(result) / size(a) * off[a], 0.0),
+            Operation::Power(a, p) => (constant(p) * size(result) / size(a) * off[a], 0.0),
             // The ratio's slope is at most this large.
             Operation::Ratio(a, _) => ((1.0 + size(result)) * off[a], 0.0),
             Operation::Sign(_) => (0.0, 0.0),

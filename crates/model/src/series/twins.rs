@@ -4,6 +4,7 @@
 //! of variables, one stands for both: the first lane of its row has what the one makes, the second what the other makes. Rows that the
 //! two share have the same number in both lanes.
 
+use super::constants::{Constant, Constants};
 use super::program::{Instruction, Operation, Program, Source};
 
 /// Fewer pairs of operations than this are not worth it.
@@ -19,20 +20,26 @@ enum At {
 }
 
 impl Program {
-    /// The same program in two lanes, by the two variables that make most pairs of operations; `None` where few are alike.
-    pub fn in_two_lanes(&self) -> Option<&Program> {
-        self.two_lanes.get_or_init(|| self.folded_in_two()).as_ref()
+    /// The same program in two lanes, by the two variables that make most pairs of operations; `None` where few are alike. Which
+    /// constants are the same is decided with that.
+    pub fn in_two_lanes(&mut self) -> Option<Program> {
+        let mut constants = std::mem::take(&mut self.constants);
+        let folded = self.folded_in_two(&mut constants);
+        self.constants = constants;
+        folded
     }
 
-    fn folded_in_two(&self) -> Option<Program> {
+    fn folded_in_two(&self, constants: &mut Constants) -> Option<Program> {
         if self.instructions().len() > LONGEST || self.branches {
             return None;
         }
         let n = self.variables();
         let choices = (0..n).flat_map(|i| (i + 1..n).map(move |j| [i, j]));
-        let pairings = choices.map(|twins| Pairing::new(self, twins));
+        let pairings = choices.map(|twins| Pairing::new(self, twins, constants));
         let best = pairings.max_by_key(|pairing| pairing.count)?;
-        (best.count >= FEWEST).then(|| best.folded()).flatten()
+        (best.count >= FEWEST)
+            .then(|| best.folded(constants))
+            .flatten()
     }
 }
 
@@ -50,7 +57,7 @@ struct Pairing<'a> {
 }
 
 impl<'a> Pairing<'a> {
-    fn new(program: &'a Program, [first, second]: [usize; 2]) -> Self {
+    fn new(program: &'a Program, [first, second]: [usize; 2], constants: &mut Constants) -> Self {
         let all = program.instructions();
         let mut pairing = Pairing {
             program,
@@ -69,7 +76,7 @@ impl<'a> Pairing<'a> {
             let image = pairing.image(one.operation);
             let alike = |b: &usize| {
                 let free = !pairing.taken[*b] && *b != a && pairing.seconds[*b].is_none();
-                free && all[*b].operation.is_like(image)
+                free && all[*b].operation.is_like(image, constants)
             };
             // Also before it: of the two either may come first.
             let found = (0..all.len()).find(alike);
@@ -81,14 +88,14 @@ impl<'a> Pairing<'a> {
     }
 
     /// The lane of all operands that are in one; `None` where none is, or not all are in the same.
-    fn lane(&self, instruction: &Instruction) -> Option<usize> {
+    fn lane(&self, instruction: &Instruction<Constant>) -> Option<usize> {
         let operands = instruction.operation.operands().into_iter().flatten();
         let mut lanes = operands.filter_map(|row| self.twins[row].map(|(_, lane)| lane));
         let first = lanes.next()?;
         lanes.all(|lane| lane == first).then_some(first)
     }
 
-    fn image(&self, operation: Operation) -> Operation {
+    fn image(&self, operation: Operation<Constant>) -> Operation<Constant> {
         operation.moved(|row| self.twins[row].map_or(row, |(twin, _)| twin))
     }
 
@@ -109,10 +116,10 @@ impl<'a> Pairing<'a> {
     }
 
     /// The program of one operation for each pair.
-    fn folded(&self) -> Option<Program> {
+    fn folded(&self, constants: &mut Constants) -> Option<Program> {
         let program = self.program;
         let mut folding = Folding {
-            made: Program::empty(program.variables() - 1),
+            made: Program::empty(program.variables() - 1, Constants::default()),
             places: vec![None; program.rows()],
             lanes: Vec::new(),
         };
@@ -132,7 +139,7 @@ impl<'a> Pairing<'a> {
             let other = self.seconds[a].map(|b| program.instructions()[b]);
             folding.emit(one, other);
         }
-        folding.complete(program, self.variables)
+        folding.complete(program, self.variables, constants)
     }
 }
 
@@ -173,7 +180,7 @@ impl Folding {
         result
     }
 
-    fn emit(&mut self, one: Instruction, other: Option<Instruction>) {
+    fn emit(&mut self, one: Instruction<Constant>, other: Option<Instruction<Constant>>) {
         let mut operation = one.operation;
         let operands = one.operation.operands().into_iter().flatten();
         let moved: Vec<(usize, usize)> = operands
@@ -216,18 +223,21 @@ impl Folding {
     }
 
     /// With the rates of the variables, those of twins in two lanes, and what else the program gives.
-    fn complete(mut self, program: &Program, [first, second]: [usize; 2]) -> Option<Program> {
+    fn complete(
+        mut self,
+        program: &Program,
+        [first, second]: [usize; 2],
+        constants: &mut Constants,
+    ) -> Option<Program> {
         let n = program.variables();
         let mut outputs = Vec::new();
         for variable in (0..n).filter(|v| *v != second) {
             let rate = program.outputs[variable];
             outputs.push(match rate {
-                Source::Number(_) if variable == first => {
-                    if program.outputs[second] != rate {
-                        return None;
-                    }
-                    rate
-                }
+                Source::Number(x) if variable == first => match program.outputs[second] {
+                    Source::Number(y) if constants.are_same(x, y) => rate,
+                    _ => return None,
+                },
                 Source::Number(_) => rate,
                 Source::Row(row) if variable == first => {
                     let Source::Row(other) = program.outputs[second] else {
@@ -278,6 +288,7 @@ impl Folding {
         self.made.bases = bases;
         self.made.outputs = outputs;
         self.made.lanes = lanes;
+        self.made.constants = constants.clone();
         self.made.order();
         Some(self.made)
     }

@@ -103,23 +103,27 @@ impl<X: Element> CompiledColumns<X> {
         let zero = any.like(0.0);
         let mut numbers = vec![zero; room];
         numbers.extend((0..LANES).map(|lane| zero.with_lane(lane, 1.0)));
-        numbers.extend(
-            jacobian
-                .iter()
-                .chain(forcing)
-                .map(|entry| match entry.series {
-                    Source::Number(x) => any.like_exact(x),
-                    Source::Row(_) => zero,
-                }),
-        );
-        Some(CompiledColumns {
+        numbers.resize(shape.forcing_entries() + forcing.len(), zero);
+        let mut made = CompiledColumns {
             shape,
             kernels,
             when,
             numbers,
             unit: f64::NAN,
             any,
-        })
+        };
+        made.set((jacobian, forcing));
+        Some(made)
+    }
+
+    /// Takes over the numbers among these entries, which are as they were but for these.
+    pub fn set(&mut self, (jacobian, forcing): (&[JacobianEntry], &[JacobianEntry])) {
+        let numbers = &mut self.numbers[self.shape.entries()..];
+        for (number, entry) in numbers.iter_mut().zip(jacobian.iter().chain(forcing)) {
+            if let Source::Number(x) = entry.series {
+                *number = self.any.like_exact(x);
+            }
+        }
     }
 
     /// Makes the series of the columns, which are begun, from the coefficients of these rows; returns whether it did: there may be no kernel yet.

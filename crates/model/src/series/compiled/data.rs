@@ -95,7 +95,7 @@ pub struct Data<T> {
 }
 
 impl<T: Element> Data<T> {
-    /// With those that hold for all steps.
+    /// With those that hold for all steps of these rows.
     pub fn new(layout: Layout, rows: &ProgramRows<T>, any: T) -> Self {
         let mut numbers = vec![any.like(0.0); layout.length];
         for k in 1..layout.room {
@@ -107,18 +107,23 @@ impl<T: Element> Data<T> {
             numbers,
             unit: any.like(f64::NAN),
         };
-        for (step, later) in rows.later().iter().enumerate() {
-            match later {
+        data.set(rows, 0..rows.later().len());
+        data
+    }
+
+    /// Takes over the constants of these operations of later orders.
+    pub fn set(&mut self, rows: &ProgramRows<T>, steps: impl IntoIterator<Item = usize>) {
+        for step in steps {
+            match &rows.later()[step] {
                 PlacedLater::Sum(sum) => {
                     for (j, term) in sum.terms.iter().enumerate() {
-                        let at = data.layout.factor_of_term(step, j);
-                        data.numbers[at] = term.factor;
+                        let at = self.layout.factor_of_term(step, j);
+                        self.numbers[at] = term.factor;
                     }
                 }
-                PlacedLater::Other(one) => data.constants(step, one, any),
+                PlacedLater::Other(one) => self.constants(step, one, self.unit),
             }
         }
-        data
     }
 
     fn constants(&mut self, step: usize, one: &PlacedInstruction<T>, any: T) {

@@ -132,6 +132,10 @@ impl Formula {
         })
     }
 
+    pub fn shape(&self) -> &Shape {
+        &self.shape
+    }
+
     pub fn layout(&self) -> &Layout {
         &self.layout
     }

@@ -84,6 +84,13 @@ impl<T: Element> Compiled<T> {
         })
     }
 
+    /// Takes over the constants of the rows, which are as they were but for these. Returns whether the kernels hold for them.
+    pub fn set(&mut self, rows: &ProgramRows<T>) -> bool {
+        let varying = rows.varying();
+        self.data.set(rows, varying.iter().copied());
+        self.formula.shape().holds_for(rows.later(), varying)
+    }
+
     /// Makes the coefficients of all rows below an order, and of the variables that one too, of rows that are prepared; returns whether it did:
     /// there may be no kernel yet, or none for such first coefficients.
     #[inline(always)]

@@ -102,6 +102,21 @@ impl Shape {
     }
 }
 
+impl Shape {
+    /// Whether it is that of these recurrences too, which differ from its own at most in the constants of these places.
+    pub fn holds_for<T: Element>(&self, later: &[PlacedLater<T>], places: &[usize]) -> bool {
+        let mut all = places.iter().map(|&at| (&self.steps[at], &later[at]));
+        all.all(|both| match both {
+            (Step::Sum { terms, .. }, PlacedLater::Sum(sum)) => {
+                let mut both = terms.iter().zip(&sum.terms);
+                both.all(|(known, term)| *known == SumTerm::of(term))
+            }
+            (Step::Recurrence(known), PlacedLater::Other(one)) => *known == Recurrence::of(one),
+            _ => false,
+        })
+    }
+}
+
 impl Step {
     fn of<T: Element>(later: &PlacedLater<T>) -> Self {
         match later {

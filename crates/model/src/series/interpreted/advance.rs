@@ -258,7 +258,7 @@ impl<T: Element> Interpreted<'_, T> {
     /// The derivative of the series of a variable at the end that was looked at, and the rate there, in units of the series.
     #[inline(always)]
     fn slope_and_rate(&self, i: usize) -> [T; 2] {
-        let rate = self.probe.coefficient(self.program.outputs[i], 0);
+        let rate = self.probe.rate(i);
         [self.slopes[i], rate * self.any.like(self.unit)]
     }
 
