@@ -79,7 +79,8 @@ impl ManyRosenbrock {
                 (time, until),
                 first.min(until - time),
                 allowed,
-                |carried, begin, end| {
+                |carried, step| {
+                    let (begin, end) = (step.begin.hi(), step.end.hi());
                     (time, done) = (end, done + 1);
                     let slipped = &carried.y[carried.field.logs()..];
                     let step = Continuous {
@@ -197,11 +198,16 @@ impl Steppable for Carried<'_> {
         &mut self.work
     }
 
+    /// Runs are saved with times that are doubles, and seen at such.
+    fn shortest_step(&self, t: f64) -> f64 {
+        f64::EPSILON * t.abs()
+    }
+
     fn underflow(&self, t: f64, h: f64) -> Error {
         Error::StepTooSmall { t, h }
     }
 
-    fn attempt(&mut self, h: f64) -> Option<f64> {
+    fn attempt(&mut self, h: f64, _: f64) -> Option<f64> {
         let tableau = self.tableau;
         self.work.factorisations += 1;
         let diagonal = 1.0 / (h * tableau.gamma);

@@ -283,10 +283,10 @@ impl Tracer {
         ];
         let (mut sum, mut off) = (0.0, 0.0);
         let mut see = |step: &AnyStep<'_>| {
-            let (middle, half) = (0.5 * (step.t0 + step.t1), 0.5 * (step.t1 - step.t0));
+            let half = 0.5 * step.length;
             let by = |points: &[(f64, f64)]| -> f64 {
                 let at = |(at, weight): &(f64, f64)| {
-                    weight * half * field.trace(step.dense(middle + half * at).as_slice())
+                    weight * half * field.trace(step.after(half * (1.0 + at)).as_slice())
                 };
                 points.iter().map(at).sum()
             };

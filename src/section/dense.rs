@@ -21,10 +21,10 @@ pub(crate) fn crossings(
     found: &mut Vec<Passage>,
 ) -> Result<()> {
     let at = |t: f64| {
-        if t == step.t1 {
+        if t == step.length {
             Vector::from_column_slice(step.y1)
         } else {
-            step.dense(t)
+            step.after(t)
         }
     };
     let knot = |t: f64| {
@@ -32,15 +32,15 @@ pub(crate) fn crossings(
         let slope = surface.rate(y.as_slice(), &field.f(&y));
         (t, surface.height(y.as_slice()), slope)
     };
-    let mut left = knot(step.t0);
+    let mut left = knot(0.0);
     if zeros.sign == 0.0 {
         zeros.sign = if left.1 == 0.0 { left.2 } else { left.1 }.signum();
     }
     for part in 1..=PARTS {
         let t = if part == PARTS {
-            step.t1
+            step.length
         } else {
-            step.t0 + (step.t1 - step.t0) * part as f64 / PARTS as f64
+            step.length * part as f64 / PARTS as f64
         };
         let right = knot(t);
         let mut turn = None;

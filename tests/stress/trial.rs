@@ -257,8 +257,8 @@ impl Watch {
             Some(format!("the states {:?} and {:?}", step.y0, step.y1))
         } else {
             let times = [0.0, 0.3, 0.7, 1.0].map(|part| t0 + part * (t1 - t0));
-            let bad = times.into_iter().find(|&t| !finite(&(step.dense)(t)));
-            bad.map(|t| format!("dense output {:?} at {t:e}", (step.dense)(t)))
+            let bad = times.into_iter().find(|&t| !finite(&step.dense(t)));
+            bad.map(|t| format!("dense output {:?} at {t:e}", step.dense(t)))
         };
         self.now = Some(t1);
         if self.fault.is_none() {
