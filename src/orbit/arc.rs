@@ -150,6 +150,9 @@ impl WorkBound {
     }
 }
 
+/// The absolute tolerance of the implicit method over its relative one. In relaxation oscillations a variable that is far below its unit for most of
+/// the time sets the pace of the others; below a hundredth the least of the relative tolerances leaves nothing but rounding.
+const OF_UNIT: f64 = 0.01;
 /// Rounding in a step, relative: of the sums, of the constants and of the change to logarithms.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
@@ -215,7 +218,12 @@ impl Tracer {
         arc: usize,
         all: usize,
     ) -> Result<Self> {
-        let tracer = Self::new(method, Tolerances::equal(tolerance)?, arc.min(all))?;
+        let absolute = match method {
+            Choice::Radau => tolerance * OF_UNIT,
+            _ => tolerance,
+        };
+        let tolerances = Tolerances::new(tolerance, absolute)?;
+        let tracer = Self::new(method, tolerances, arc.min(all))?;
         Ok(tracer.within(all))
     }
 
