@@ -42,7 +42,7 @@ use crate::series::Expansion;
 #[doc(hidden)]
 pub use crate::series::{COMPILE, allowed_compiling, used_compiling};
 pub use crate::series::{VECTORS, Vectors, allowed_vectors, used_vectors};
-pub(crate) use singularity::step_underflow;
+pub(crate) use singularity::{may_be_spike, step_underflow};
 use std::ops::Deref;
 
 /// One accepted step, as an observer sees it.

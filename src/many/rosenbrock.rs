@@ -198,11 +198,6 @@ impl Steppable for Carried<'_> {
         &mut self.work
     }
 
-    /// Runs are saved with times that are doubles, and seen at such.
-    fn shortest_step(&self, t: f64) -> f64 {
-        f64::EPSILON * t.abs()
-    }
-
     fn underflow(&self, t: f64, h: f64) -> Error {
         Error::StepTooSmall { t, h }
     }
@@ -235,6 +230,11 @@ impl Steppable for Carried<'_> {
         combine(&mut self.argument, None, &tableau.e[..stages], &self.stages);
         self.scales
             .norm(&self.field, &self.argument, (&self.y, &self.next))
+    }
+
+    /// Or about: such runs are saved, and seen, at times that are doubles.
+    fn stays(&self) -> bool {
+        true
     }
 
     fn fastest(&self) -> (f64, f64) {

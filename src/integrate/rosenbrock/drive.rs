@@ -2,7 +2,7 @@
 
 use super::control::Controller;
 use crate::error::{Error, Result};
-use crate::integrate::{Control, Work};
+use crate::integrate::{Control, Work, may_be_spike};
 use crate::number::DoubleDouble;
 
 /// Something that can be moved by a step, and stays where it is until the step is accepted.
@@ -15,14 +15,12 @@ pub(crate) trait Steppable {
     }
 
     fn work(&mut self) -> &mut Work;
-    /// Steps at t are no shorter than this.
-    fn shortest_step(&self, t: f64) -> f64 {
-        f64::EPSILON * f64::EPSILON * t.abs()
-    }
     /// Why steps of about h at t are too short.
     fn underflow(&self, t: f64, h: f64) -> Error;
     /// Tries a step in which the double next to the time grows by `clock`; the norm of its error, or `None` if something was not finite.
     fn attempt(&mut self, h: f64, clock: f64) -> Option<f64>;
+    /// Whether the tried step ends where it begins, to all digits.
+    fn stays(&self) -> bool;
     /// |J| where it is, and where the tried step ends, which must have been looked at.
     fn fastest(&self) -> (f64, f64);
     /// Evaluates at the end of the tried step what the next one needs; false if something is not finite.
@@ -53,7 +51,7 @@ pub(crate) fn drive<M: Steppable>(
     let mut controller = Controller::new(carried.error_order());
     let mut tried = 0;
     let mut refused = None;
-    let mut is_spike = false;
+    let mut within_spike = false;
     while now != DoubleDouble::from(end) {
         let t = now.hi();
         if tried == limit {
@@ -63,16 +61,18 @@ pub(crate) fn drive<M: Steppable>(
         let longest = carried.max_step();
         let time = next_step(now, end, h.clamp(-longest, longest));
         let (step, is_last) = (time.length, time.end == DoubleDouble::from(end));
-        let too_short = step.abs() <= carried.shortest_step(t) && !is_last;
-        if step == 0.0 || refused == Some(step) || too_short || !step.is_finite() {
+        // No shorter step can be added to the time.
+        let stays = time.end == now;
+        if step == 0.0 || refused == Some(step) || stays || !step.is_finite() {
             return Err(carried.underflow(t, h));
         }
-        if step.abs() < f64::EPSILON * t.abs() {
-            // Where the solution ends it is not followed any nearer.
-            if !is_spike && let error @ Error::BlowUp { .. } = carried.underflow(t, h) {
-                return Err(error);
+        let is_short = step.abs() < f64::EPSILON * t.abs() && !is_last;
+        if is_short && !within_spike {
+            let why = carried.underflow(t, h);
+            if !may_be_spike(&why) {
+                return Err(why);
             }
-            is_spike = true;
+            within_spike = true;
         }
         let error = carried.attempt(step, time.end.hi() - t);
         let accepted = error.is_some_and(|error| error <= 1.0);
@@ -83,10 +83,14 @@ pub(crate) fn drive<M: Steppable>(
             refused = Some(step);
             carried.work().rejected += 1;
         } else if seen_to_end {
+            // Nothing but rounding: there is no spike.
+            if is_short && carried.stays() {
+                return Err(carried.underflow(t, h));
+            }
             h = controller.accepted(step, error.unwrap_or(0.0));
             refused = None;
             carried.work().steps += 1;
-            is_spike &= step.abs() < f64::EPSILON * t.abs();
+            within_spike &= is_short;
             let control = seen(carried, &time)?;
             carried.advance();
             now = time.end;
