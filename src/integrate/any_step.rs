@@ -63,6 +63,30 @@ impl<'a> AnyStep<'a> {
         self.after(self.since_begin(t))
     }
 
+    /// Between which numbers a time within the step is looked for, by [`AnyStep::at`]: times of the run, in which solvers may have their solutions, or where
+    /// doubles have no room for them those since the beginning.
+    pub(crate) fn room(&self) -> (f64, f64) {
+        match self.is_short() {
+            true => (0.0, self.length),
+            false => (self.t0, self.t1),
+        }
+    }
+
+    /// The continuous solution there, and how long after the beginning that is.
+    pub(crate) fn at(&self, time: f64) -> (Vector, f64) {
+        let after = match self.is_short() {
+            true => time,
+            false => self.since_begin(time),
+        };
+        (self.after(after), after)
+    }
+
+    /// Whether it is so short, in spacings of the doubles around it, that these are no places within it.
+    fn is_short(&self) -> bool {
+        const ROOM: f64 = 1e4;
+        self.length.abs() < ROOM * f64::EPSILON * self.t0.abs().max(self.t1.abs())
+    }
+
     /// The time from the beginning to this time, within the step.
     pub fn since_begin(&self, t: f64) -> f64 {
         since(self.begin, self.length, t)

@@ -232,9 +232,9 @@ impl Steppable for Carried<'_> {
             .norm(&self.field, &self.argument, (&self.y, &self.next))
     }
 
-    /// Or about: such runs are saved, and seen, at times that are doubles.
-    fn stays(&self) -> bool {
-        true
+    /// Such runs are saved, and seen, at times that are doubles.
+    fn goes_through_spikes(&self) -> bool {
+        false
     }
 
     fn fastest(&self) -> (f64, f64) {

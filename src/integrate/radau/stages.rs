@@ -443,10 +443,6 @@ impl Steppable for Stages<'_> {
         Some(of_state.max(self.differentiate(h)?))
     }
 
-    fn stays(&self) -> bool {
-        self.next == self.y
-    }
-
     fn fastest(&self) -> (f64, f64) {
         (self.jacobian.amax(), self.ahead.1.amax())
     }

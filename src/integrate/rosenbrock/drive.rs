@@ -15,12 +15,14 @@ pub(crate) trait Steppable {
     }
 
     fn work(&mut self) -> &mut Work;
+    /// Whether steps may be too short to change the double next to the time.
+    fn goes_through_spikes(&self) -> bool {
+        true
+    }
     /// Why steps of about h at t are too short.
     fn underflow(&self, t: f64, h: f64) -> Error;
     /// Tries a step in which the double next to the time grows by `clock`; the norm of its error, or `None` if something was not finite.
     fn attempt(&mut self, h: f64, clock: f64) -> Option<f64>;
-    /// Whether the tried step ends where it begins, to all digits.
-    fn stays(&self) -> bool;
     /// |J| where it is, and where the tried step ends, which must have been looked at.
     fn fastest(&self) -> (f64, f64);
     /// Evaluates at the end of the tried step what the next one needs; false if something is not finite.
@@ -51,7 +53,7 @@ pub(crate) fn drive<M: Steppable>(
     let mut controller = Controller::new(carried.error_order());
     let mut tried = 0;
     let mut refused = None;
-    let mut within_spike = false;
+    let (mut within_spike, mut beyond) = (false, false);
     while now != DoubleDouble::from(end) {
         let t = now.hi();
         if tried == limit {
@@ -67,9 +69,10 @@ pub(crate) fn drive<M: Steppable>(
             return Err(carried.underflow(t, h));
         }
         let is_short = step.abs() < f64::EPSILON * t.abs() && !is_last;
-        if is_short && !within_spike {
+        if is_short && (!within_spike || beyond) {
             let why = carried.underflow(t, h);
-            if !may_be_spike(&why) {
+            // Nor is there a spike where the solution has no numbers a step ahead.
+            if beyond || !carried.goes_through_spikes() || !may_be_spike(&why) {
                 return Err(why);
             }
             within_spike = true;
@@ -83,12 +86,8 @@ pub(crate) fn drive<M: Steppable>(
             refused = Some(step);
             carried.work().rejected += 1;
         } else if seen_to_end {
-            // Nothing but rounding: there is no spike.
-            if is_short && carried.stays() {
-                return Err(carried.underflow(t, h));
-            }
             h = controller.accepted(step, error.unwrap_or(0.0));
-            refused = None;
+            (refused, beyond) = (None, false);
             carried.work().steps += 1;
             within_spike &= is_short;
             let control = seen(carried, &time)?;
@@ -98,6 +97,7 @@ pub(crate) fn drive<M: Steppable>(
                 return Ok(());
             }
         } else {
+            beyond |= accepted || error.is_none();
             h = controller.refused(step, error.filter(|_| !accepted));
             refused = Some(step);
             carried.work().rejected += 1;

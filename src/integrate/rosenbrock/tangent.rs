@@ -216,10 +216,6 @@ impl<S: Scheme, const N: usize, const KEPT: usize> Steppable for Bundle<'_, S, N
         Some(norm)
     }
 
-    fn stays(&self) -> bool {
-        self.next.0 == self.y
-    }
-
     fn fastest(&self) -> (f64, f64) {
         let [here, ahead] = [&self.here, &self.ahead].map(|at| at.linear.jacobian.amax());
         (here, ahead)

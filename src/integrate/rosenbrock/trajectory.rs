@@ -149,10 +149,6 @@ impl<S: Scheme, const N: usize> Steppable for StepState<'_, S, N> {
         error_norm(self.may_err, &error, &self.y, &self.next)
     }
 
-    fn stays(&self) -> bool {
-        self.next == self.y
-    }
-
     fn fastest(&self) -> (f64, f64) {
         (self.here.jacobian.amax(), self.ahead.jacobian.amax())
     }

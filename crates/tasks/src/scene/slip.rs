@@ -46,11 +46,7 @@ pub(super) fn sum(before: &Slips, within: [f64; 2]) -> Slips {
 }
 
 /// The slips within a time h from the beginning of the step, along the dense output.
-pub(super) fn quadrature<const N: usize>(
-    field: &dyn Driven<N>,
-    step: &Step<'_, N>,
-    h: f64,
-) -> [f64; 2] {
+fn quadrature<const N: usize>(field: &dyn Driven<N>, step: &Step<'_, N>, h: f64) -> [f64; 2] {
     let mut slips = [0.0; 2];
     for (node, weight) in GAUSS {
         let v = field.slip_rates(&step.after(node * h));

@@ -1,18 +1,17 @@
 //! Events on the dense output of a step: knots, and zeros in the brackets between them.
 
-use super::super::slip::{Slips, quadrature, sum};
+use super::super::slip::{Slips, at, slips};
 use super::{Detector, Moment, sign};
 use twinslip::error::Result;
-use twinslip::field::State;
 use twinslip::integrate::Step;
 use twinslip::model::Driven;
-use twinslip::number::bracketed_root;
+use twinslip::number::{DoubleDouble, bracketed_root};
 
 /// Parts of a step. Between two knots the sign of the slope shows whether an extremum lies there, so an excursion is missed
 /// only if the dense output turns three times within a part, which the error test of a step does not let pass.
 const PARTS: usize = 4;
 
-/// A point of the dense output, so long after the beginning of the step, with V_H, the excess of the total slip rate over it and its slope in time.
+/// A point of the dense output, with V_H, the excess of the total slip rate over it and its slope in time.
 #[derive(Clone, Copy)]
 struct Knot {
     time: f64,
@@ -29,19 +28,6 @@ struct Seen<'a, 's, const N: usize> {
     before: &'a Slips,
 }
 
-impl<const N: usize> Seen<'_, '_, N> {
-    /// The dense output, and exactly the step's own states at its ends.
-    fn at(&self, time: f64) -> State<N> {
-        if time == 0.0 {
-            *self.step.y0
-        } else if time == self.step.length {
-            *self.step.y1
-        } else {
-            self.step.after(time)
-        }
-    }
-}
-
 impl Detector {
     pub(super) fn see_dense<const N: usize>(
         &mut self,
@@ -54,15 +40,15 @@ impl Detector {
             step,
             before,
         };
-        let mut left = self.knot(&seen, 0.0);
+        let mut left = self.knot(&seen, step.t0);
         if self.zeros.sign == 0.0 {
             self.zeros.sign = sign(left.excess).or(sign(left.slope)).unwrap_or(0.0);
         }
         for part in 1..=PARTS {
             let time = if part == PARTS {
-                step.length
+                step.t1
             } else {
-                step.length * part as f64 / PARTS as f64
+                step.t0 + (step.t1 - step.t0) * part as f64 / PARTS as f64
             };
             let right = self.knot(&seen, time);
             for turning in self.turnings_between(&seen, left, right) {
@@ -126,19 +112,19 @@ impl Detector {
 
     fn moment<const N: usize>(&self, seen: &Seen<'_, '_, N>, t: f64) -> Moment {
         Moment {
-            time: seen.step.begin + t,
-            stress: seen.at(t)[0],
-            slips: sum(seen.before, quadrature(seen.field, seen.step, t)),
+            time: DoubleDouble::from(t),
+            stress: at(seen.step, t)[0],
+            slips: slips(seen.field, seen.step, seen.before, t),
         }
     }
 
     // dtau/dt = K (V_H - v_1 - v_2) and its derivative J f hold the excess and its slope, for every system.
     fn knot<const N: usize>(&self, seen: &Seen<'_, '_, N>, time: f64) -> Knot {
-        let (field, y) = (seen.field, seen.at(time));
+        let (field, y) = (seen.field, at(seen.step, time));
         let curvature = (field.jacobian(&y) * field.f(&y))[0];
         let v = field.slip_rates(&y);
         let total = v[..self.interfaces].iter().sum::<f64>();
-        let driving = self.driving_at((seen.step.begin + time).hi());
+        let driving = self.driving_at(time);
         Knot {
             time,
             driving,
