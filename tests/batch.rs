@@ -178,7 +178,7 @@ fn observers_see_and_stop_single_runs() {
         }
         reached[run] = step.t1;
         steps[run] += 1;
-        let end = (step.dense)(step.t1);
+        let end = step.dense(step.t1);
         assert!(
             (end - step.y1).amax() < 1e-11,
             "{:e}",

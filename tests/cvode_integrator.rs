@@ -133,7 +133,7 @@ fn backwards_undoes_forwards() {
         let mut times = Vec::new();
         let mut observer = |step: &Step<'_, 3>| {
             times.push((step.t0, step.t1));
-            let middle = (step.dense)(0.5 * (step.t0 + step.t1));
+            let middle = step.dense(0.5 * (step.t0 + step.t1));
             assert!((middle - step.y0).amax() <= 2.0 * (step.y1 - step.y0).amax() + 1e-9);
             Ok(Control::Continue)
         };
@@ -159,8 +159,8 @@ fn an_observer_sees_contiguous_steps_and_changes_nothing() {
         let (mut t, mut y, mut steps) = (0.0, y0, 0);
         let mut observer = |step: &Step<'_, 3>| {
             assert_eq!((step.t0, *step.y0), (t, y));
-            assert_eq!((step.dense)(step.t1), *step.y1);
-            assert!(((step.dense)(step.t0) - step.y0).amax() < 1e-6);
+            assert_eq!(step.dense(step.t1), *step.y1);
+            assert!((step.dense(step.t0) - step.y0).amax() < 1e-6);
             (t, y) = (step.t1, *step.y1);
             steps += 1;
             Ok(Control::Continue)
@@ -180,7 +180,7 @@ fn dense_output_agrees_with_tight_runs_from_the_same_step() {
         let mut seen = Vec::new();
         let mut observer = |step: &Step<'_, 3>| {
             let t = step.t0 + 0.37 * (step.t1 - step.t0);
-            seen.push((step.t0, *step.y0, t, (step.dense)(t)));
+            seen.push((step.t0, *step.y0, t, step.dense(t)));
             Ok(Control::Continue)
         };
         integrator(method, 1e-8)
@@ -276,7 +276,7 @@ fn the_tangent_agrees_with_differences_and_with_liouville() {
         let mut integral = 0.0;
         let mut observer = |step: &Step<'_, 3>| {
             let trace = |y: &State<3>| field.jacobian(y).trace();
-            let middle = (step.dense)(0.5 * (step.t0 + step.t1));
+            let middle = step.dense(0.5 * (step.t0 + step.t1));
             integral += (step.t1 - step.t0) / 6.0
                 * (trace(step.y0) + 4.0 * trace(&middle) + trace(step.y1));
             Ok(Control::Continue)
@@ -323,7 +323,7 @@ fn an_interval_of_a_few_spacings_of_time_is_integrated_too() {
             let expected = y0 + field.f(&y0) * (end - 1e6);
             let mut seen = 0.0;
             let mut observer = |step: &Step<'_, 3>| {
-                assert!(((step.dense)(step.t1) - step.y1).amax() < 1e-12);
+                assert!((step.dense(step.t1) - step.y1).amax() < 1e-12);
                 seen = step.t1;
                 Ok(Control::Continue)
             };

@@ -116,6 +116,7 @@ mod series_of_interfaces;
 mod slip_events;
 mod solution_curves;
 mod special_points;
+mod spikes;
 mod step_ends;
 mod strong_resonance;
 #[cfg(feature = "sundials")]

@@ -60,7 +60,7 @@ fn stiffness_neither_shortens_steps_nor_costs_digits() {
             let mut inside = 0.0_f64;
             let mut see = |step: &twinslip::integrate::Step<'_, 2>| {
                 let middle = 0.5 * (step.t0 + step.t1);
-                inside = inside.max(((step.dense)(middle)[0] - middle.cos()).abs());
+                inside = inside.max((step.dense(middle)[0] - middle.cos()).abs());
                 Ok(Control::Continue)
             };
             let end = radau.flow(&field, (0.0, 20.0), &start, Some(&mut see));

@@ -60,7 +60,7 @@ fn fixed_step_errors(method: RosenbrockMethod, steps: u32) -> (f64, f64) {
         let mut look = |step: &Step<'_, 2>| {
             for theta in [0.15, 0.35, 0.5, 0.65, 0.85] {
                 let at = step.t0 + theta * (step.t1 - step.t0);
-                dense_error = dense_error.max(((step.dense)(at) - Spiral::solution(at)).amax());
+                dense_error = dense_error.max((step.dense(at) - Spiral::solution(at)).amax());
             }
             Ok(Control::Continue)
         };
@@ -114,7 +114,7 @@ fn every_continuous_solution_converges_with_its_order() {
             let h = 0.2 * 0.5_f64.powi(halvings);
             let mut error = 0.0;
             let mut look = |step: &Step<'_, 2>| {
-                error = ((step.dense)(0.4 * h) - Spiral::solution(0.4 * h)).amax();
+                error = (step.dense(0.4 * h) - Spiral::solution(0.4 * h)).amax();
                 Ok(Control::Continue)
             };
             let mut rosenbrock = Rosenbrock::<2>::new(method, tolerances, 1).unwrap();
@@ -216,7 +216,7 @@ fn steps_join_land_on_the_end_and_leave_no_sliver() {
             let mut see = |step: &Step<'_, 3>| {
                 assert_eq!((step.t0, *step.y0), (now, y));
                 for (t, exact) in [(step.t0, step.y0), (step.t1, step.y1)] {
-                    assert!(((step.dense)(t) - exact).amax() < 1e-13);
+                    assert!((step.dense(t) - exact).amax() < 1e-13);
                 }
                 (now, y) = (step.t1, *step.y1);
                 lengths.push((step.t1 - step.t0).abs());
@@ -244,7 +244,7 @@ fn an_observer_changes_nothing_and_can_stop_or_fail() {
     let alone = rosenbrock.flow(&*field, (0.0, 1.0), &start, None).unwrap();
     let work = rosenbrock.work();
     let mut look = |step: &Step<'_, 3>| {
-        (step.dense)(0.5 * (step.t0 + step.t1));
+        step.dense(0.5 * (step.t0 + step.t1));
         Ok(Control::Continue)
     };
     let seen = rosenbrock

@@ -162,7 +162,7 @@ fn the_determinant_is_that_of_liouville() {
     // Gauss's three points on each step
     let mut add = |step: &Step<'_, 3>| {
         let (middle, half) = (0.5 * (step.t0 + step.t1), 0.5 * (step.t1 - step.t0));
-        let trace = |x: f64| field.jacobian(&(step.dense)(middle + half * x)).trace();
+        let trace = |x: f64| field.jacobian(&step.dense(middle + half * x)).trace();
         let outer = 0.6_f64.sqrt();
         logarithm += half * (5.0 * trace(-outer) + 8.0 * trace(0.0) + 5.0 * trace(outer)) / 9.0;
         Ok(Control::Continue)

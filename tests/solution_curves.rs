@@ -193,6 +193,12 @@ fn every_end_is_told_in_words() {
     assert!(*length < 1e-5 && *because == Some(Error::Input("behind the wall".into())));
     assert!(continuation.curve.renewed > 0);
     assert!(end.to_string().contains("finds no next point"), "{end}");
+    // Where points are found, but no step is short enough for their directions.
+    let end = Stop::StepTooSmall {
+        length: 1e-9,
+        because: None,
+    };
+    assert!(end.to_string().contains("the direction"), "{end}");
     let mut continuation = Continuation::new(CIRCLE, 0.1);
     let end = continuation.follow(&[], 7, &mut |_, _, _| Continue(()));
     assert_eq!(end, Ok(Stop::MaxPoints(7)));

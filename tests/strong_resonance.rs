@@ -58,13 +58,13 @@ fn cycles_met(mu: [f64; 2], amplitudes: (f64, f64)) -> usize {
                 let (mut low, mut high) = (step.t0, step.t1);
                 for _ in 0..60 {
                     let middle = 0.5 * (low + high);
-                    if (step.dense)(middle)[1] < 0.0 {
+                    if step.dense(middle)[1] < 0.0 {
                         low = middle;
                     } else {
                         high = middle;
                     }
                 }
-                back = -(step.dense)(low)[0];
+                back = -step.dense(low)[0];
                 Ok(Control::Stop)
             }),
         );

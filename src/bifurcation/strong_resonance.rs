@@ -82,11 +82,11 @@ fn passage(mu: [f64; 2], start: State<2>, size: f64, direction: f64) -> Result<A
             return Ok(Control::Continue);
         }
         let along = |t: f64| {
-            let y = (step.dense)(t);
+            let y = step.after(t);
             (y[1], field_slope(mu, &y))
         };
-        let time = bracketed_root("a passage of w = 0", step.t0, step.t1, along)?;
-        let v = (step.dense)(time)[0];
+        let after = bracketed_root("a passage of w = 0", 0.0, step.length, along)?;
+        let (time, v) = ((step.begin + after).hi(), step.after(after)[0]);
         found = Some(AxisPassage { time, v });
         Ok(Control::Stop)
     };

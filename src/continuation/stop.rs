@@ -16,7 +16,7 @@ pub enum Stop {
     MaxPoints(usize),
     /// The observer had seen enough.
     Observer,
-    /// Newton's method fails, down to steps of this length.
+    /// Newton's method fails, or the tangent turns, down to steps of this length.
     StepTooSmall {
         /// The length of the last step that was tried.
         length: f64,
@@ -44,6 +44,14 @@ impl fmt::Display for Stop {
             Stop::Closed => write!(f, "the curve is closed"),
             Stop::MaxPoints(most) => write!(f, "the bound of {most} points is used up"),
             Stop::Observer => write!(f, "no more was asked for"),
+            Stop::StepTooSmall {
+                length,
+                because: None,
+            } => write!(
+                f,
+                "Newton's method finds next points, but the direction of the curve is another at each, down to steps of {length:.1e}: it is lost in what \
+                 the points are off"
+            ),
             Stop::StepTooSmall { length, .. } => write!(
                 f,
                 "Newton's method finds no next point, down to steps of {length:.1e}"

@@ -1,6 +1,6 @@
 //! The steps of a flow in any dimension, as an observer sees them.
 
-use super::{Control, Step};
+use super::{Control, Step, since};
 use crate::error::Result;
 use crate::field::Vector;
 use crate::number::{DoubleDouble, polynomial::Crossing};
@@ -23,7 +23,11 @@ pub struct AnyStep<'a> {
     /// A bound on how far the first component strays from its value at `t0`, of methods to which it costs nothing; else
     /// infinity.
     pub reach: f64,
-    dense: &'a dyn Fn(f64) -> Vector,
+    /// `t0` in 31 digits. Steps may be shorter than the spacing of the doubles around `t0`.
+    pub begin: DoubleDouble,
+    /// The time from the beginning to the end, signed.
+    pub length: f64,
+    continuous: &'a dyn Fn(f64) -> Vector,
     series: &'a dyn Fn() -> Option<&'a dyn StepSeries>,
 }
 
@@ -40,14 +44,52 @@ impl<'a> AnyStep<'a> {
             t1: step.t1,
             y1: &step.y1.as_slice()[..variables],
             reach: step.reach,
-            dense: &|t| Vector::from_column_slice(&(step.dense)(t).as_slice()[..variables]),
+            begin: step.begin,
+            length: step.length,
+            continuous: &|time| {
+                Vector::from_column_slice(&step.after(time).as_slice()[..variables])
+            },
             series: &|| step.series().map(|series| series as &dyn StepSeries),
         })
     }
 
-    /// The continuous solution at a time within the step.
+    /// The continuous solution so long after the beginning, from 0 to `length`.
+    pub fn after(&self, time: f64) -> Vector {
+        (self.continuous)(time)
+    }
+
+    /// The same at a time, as near to it as this step comes.
     pub fn dense(&self, t: f64) -> Vector {
-        (self.dense)(t)
+        self.after(self.since_begin(t))
+    }
+
+    /// Between which numbers a time within the step is looked for, by [`AnyStep::at`]: times of the run, in which solvers may have their solutions, or where
+    /// doubles have no room for them those since the beginning.
+    pub(crate) fn room(&self) -> (f64, f64) {
+        match self.is_short() {
+            true => (0.0, self.length),
+            false => (self.t0, self.t1),
+        }
+    }
+
+    /// The continuous solution there, and how long after the beginning that is.
+    pub(crate) fn at(&self, time: f64) -> (Vector, f64) {
+        let after = match self.is_short() {
+            true => time,
+            false => self.since_begin(time),
+        };
+        (self.after(after), after)
+    }
+
+    /// Whether it is so short, in spacings of the doubles around it, that these are no places within it.
+    fn is_short(&self) -> bool {
+        const ROOM: f64 = 1e4;
+        self.length.abs() < ROOM * f64::EPSILON * self.t0.abs().max(self.t1.abs())
+    }
+
+    /// The time from the beginning to this time, within the step.
+    pub fn since_begin(&self, t: f64) -> f64 {
+        since(self.begin, self.length, t)
     }
 
     /// The series at `t0`, of methods that step by one.

@@ -218,7 +218,7 @@ impl<const N: usize> Auto<N> {
             }
             let (rate, decays) = dominant_mode(&field.jacobian(step.y1));
             let least = if steps < TRIAL { FUTILE } else { PAYS };
-            let pays = decays && (step.t1 - step.t0).abs() * rate > least;
+            let pays = decays && step.length.abs() * rate > least;
             Ok(if pays {
                 Control::Continue
             } else {

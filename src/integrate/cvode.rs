@@ -6,6 +6,7 @@
 use super::{Control, Integrator, Observer, Step, Tolerances, Work, step_underflow};
 use crate::error::{Error, Result};
 use crate::field::{Jacobian, State, VectorField, checked_places};
+use crate::number::DoubleDouble;
 use crate::sundials::{
     Cvode, ErrorControl, Mode, MultistepMethod, Operations, Problem, Reason, Sensitivity,
     SensitivityMethod, part_of_mean,
@@ -111,8 +112,8 @@ impl<const N: usize> CvodeIntegrator<N> {
             let solver = &self.solver;
             // An observer's dense output can't fail; what CVODES objects to is raised after it.
             let objection = RefCell::new(None);
-            let dense = |t: f64| {
-                let within = t.clamp(t0.min(t1), t0.max(t1));
+            let continuous = |time: f64| {
+                let within = (t0 + time).clamp(t0.min(t1), t0.max(t1));
                 solver.dense(within).unwrap_or_else(|error| {
                     objection.replace(Some(error));
                     State::repeat(f64::NAN)
@@ -123,7 +124,9 @@ impl<const N: usize> CvodeIntegrator<N> {
                 y0: &y0,
                 t1,
                 y1: &y1,
-                dense: &dense,
+                begin: DoubleDouble::from(t0),
+                length: t1 - t0,
+                continuous: &continuous,
                 reach: f64::INFINITY,
                 expansion: None,
                 slips: None,
@@ -204,13 +207,16 @@ impl<const N: usize> Integrator<N> for CvodeIntegrator<N> {
         let y1 = self.solver.state();
         if let Some(observer) = observer {
             // Over so short an interval a chord is as good as the solution.
-            let dense = |s: f64| y0.lerp(&y1, ((s - t.0) / (t.1 - t.0)).clamp(0.0, 1.0));
+            let length = t.1 - t.0;
+            let continuous = |time: f64| y0.lerp(&y1, (time / length).clamp(0.0, 1.0));
             observer(&Step {
                 t0: t.0,
                 y0,
                 t1: t.1,
                 y1: &y1,
-                dense: &dense,
+                begin: DoubleDouble::from(t.0),
+                length,
+                continuous: &continuous,
                 reach: f64::INFINITY,
                 expansion: None,
                 slips: None,

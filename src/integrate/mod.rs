@@ -42,7 +42,7 @@ use crate::series::Expansion;
 #[doc(hidden)]
 pub use crate::series::{COMPILE, allowed_compiling, used_compiling};
 pub use crate::series::{VECTORS, Vectors, allowed_vectors, used_vectors};
-pub(crate) use singularity::step_underflow;
+pub(crate) use singularity::{may_be_spike, step_underflow};
 use std::ops::Deref;
 
 /// One accepted step, as an observer sees it.
@@ -56,8 +56,12 @@ pub struct Step<'a, const N: usize> {
     pub t1: f64,
     /// State at `t1`.
     pub y1: &'a State<N>,
-    /// The continuous solution on `t0..=t1`; evaluated only when called.
-    pub dense: &'a dyn Fn(f64) -> State<N>,
+    /// `t0` in 31 digits. Steps may be shorter than the spacing of the doubles around `t0`.
+    pub begin: DoubleDouble,
+    /// The time from the beginning to the end, signed.
+    pub length: f64,
+    /// [`Step::after`]
+    pub(crate) continuous: &'a dyn Fn(f64) -> State<N>,
     /// A bound on how far the first component strays from its value at `t0`, of methods to which it costs nothing; else
     /// infinity.
     pub reach: f64,
@@ -68,6 +72,21 @@ pub struct Step<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Step<'a, N> {
+    /// The continuous solution so long after the beginning, from 0 to `length`; evaluated only when called.
+    pub fn after(&self, time: f64) -> State<N> {
+        (self.continuous)(time)
+    }
+
+    /// The same at a time, as near to it as this step comes.
+    pub fn dense(&self, t: f64) -> State<N> {
+        self.after(self.since_begin(t))
+    }
+
+    /// The time from the beginning to this time, within the step.
+    pub fn since_begin(&self, t: f64) -> f64 {
+        since(self.begin, self.length, t)
+    }
+
     /// The series at `t0`, of methods that step by one.
     pub fn series(&self) -> Option<&'a Expansion<N>> {
         self.expansion.map(|made| **made)
@@ -77,6 +96,12 @@ impl<'a, const N: usize> Step<'a, N> {
     pub fn slips(&self) -> Option<[DoubleDouble; 2]> {
         self.slips.and_then(|slips| slips())
     }
+}
+
+/// The time from the beginning of a step of this length to t, within the step.
+fn since(begin: DoubleDouble, length: f64, t: f64) -> f64 {
+    let time = (DoubleDouble::from(t) - begin).hi();
+    time.clamp(length.min(0.0), length.max(0.0))
 }
 
 /// Whether to go on after a step.

@@ -71,6 +71,18 @@ pub(crate) fn step_underflow<const N: usize>(
     }
 }
 
+/// Whether steps too short to change t, for this reason, may go on in time of 31 digits: the solution may go through a spike. Where it ends, or has rates that
+/// leave the numbers, it is not followed any nearer.
+pub(crate) fn may_be_spike(why: &Error) -> bool {
+    match why {
+        Error::StepTooSmall { .. } => true,
+        Error::TooFast {
+            overflows, lasting, ..
+        } => !overflows && lasting.is_none(),
+        _ => false,
+    }
+}
+
 /// The time in which the solution from y leaves the numbers, if it accelerates all the way and that takes no longer than
 /// `most`.
 ///

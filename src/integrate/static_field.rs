@@ -134,11 +134,11 @@ impl<const N: usize> Sinking<N> {
             };
             // By Simpson's rule: steps may be long, where nothing else moves.
             let [begin, middle, end] = rates.get_or_insert_with(|| {
-                let middle = (step.dense)(0.5 * (step.t0 + step.t1));
+                let middle = step.after(0.5 * step.length);
                 [*step.y0, middle, *step.y1].map(|y| field.jacobian(&y).diagonal())
             });
             let rate = (begin[variable] + 4.0 * middle[variable] + end[variable]) / 6.0;
-            *below += rate * (step.t1 - step.t0);
+            *below += rate * step.length;
             // A value just above the least double may be all error: the rates say whether it is there.
             let is_back = step.y1[variable].abs() > SUNKEN;
             if is_back || below.is_nan() || *below > 0.0 {

@@ -79,7 +79,8 @@ impl ManyRosenbrock {
                 (time, until),
                 first.min(until - time),
                 allowed,
-                |carried, begin, end| {
+                |carried, step| {
+                    let (begin, end) = (step.begin.hi(), step.end.hi());
                     (time, done) = (end, done + 1);
                     let slipped = &carried.y[carried.field.logs()..];
                     let step = Continuous {
@@ -201,7 +202,7 @@ impl Steppable for Carried<'_> {
         Error::StepTooSmall { t, h }
     }
 
-    fn attempt(&mut self, h: f64) -> Option<f64> {
+    fn attempt(&mut self, h: f64, _: f64) -> Option<f64> {
         let tableau = self.tableau;
         self.work.factorisations += 1;
         let diagonal = 1.0 / (h * tableau.gamma);
@@ -229,6 +230,11 @@ impl Steppable for Carried<'_> {
         combine(&mut self.argument, None, &tableau.e[..stages], &self.stages);
         self.scales
             .norm(&self.field, &self.argument, (&self.y, &self.next))
+    }
+
+    /// Such runs are saved, and seen, at times that are doubles.
+    fn goes_through_spikes(&self) -> bool {
+        false
     }
 
     fn fastest(&self) -> (f64, f64) {

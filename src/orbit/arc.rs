@@ -158,6 +158,9 @@ impl WorkBound {
 
 /// The coarse tolerance of flows and their derivatives while an iteration is far from its end.
 const COARSE: f64 = 1e-8;
+/// The absolute tolerance of the implicit method over its relative one. In relaxation oscillations a variable that is far below its unit for most of
+/// the time sets the pace of the others; below a hundredth the least of the relative tolerances leaves nothing but rounding.
+const OF_UNIT: f64 = 0.01;
 /// Rounding in a step, relative: of the sums, of the constants and of the change to logarithms.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
@@ -228,7 +231,12 @@ impl Tracer {
         arc: usize,
         all: usize,
     ) -> Result<Self> {
-        let tracer = Self::new(method, Tolerances::equal(tolerance)?, arc.min(all))?;
+        let absolute = match method {
+            Choice::Radau => tolerance * OF_UNIT,
+            _ => tolerance,
+        };
+        let tolerances = Tolerances::new(tolerance, absolute)?;
+        let tracer = Self::new(method, tolerances, arc.min(all))?;
         Ok(tracer.within(all))
     }
 
@@ -240,11 +248,12 @@ impl Tracer {
 
     /// From now on with a coarse tolerance, or again with its own.
     pub(super) fn coarsely(&mut self, yes: bool) {
-        let rtol = COARSE.max(self.tolerances.rtol);
         if yes && self.coarse.is_none() {
+            let Tolerances { rtol, atol, .. } = self.tolerances;
+            let times = (COARSE / rtol).max(1.0);
             let tolerances = Tolerances {
-                rtol,
-                atol: rtol,
+                rtol: times * rtol,
+                atol: times * atol,
                 ..self.tolerances
             };
             self.coarse = AnyIntegrator::new(self.choice, tolerances, self.max_steps).ok();
@@ -314,10 +323,10 @@ impl Tracer {
         ];
         let (mut sum, mut off) = (0.0, 0.0);
         let mut see = |step: &AnyStep<'_>| {
-            let (middle, half) = (0.5 * (step.t0 + step.t1), 0.5 * (step.t1 - step.t0));
+            let half = 0.5 * step.length;
             let by = |points: &[(f64, f64)]| -> f64 {
                 let at = |(at, weight): &(f64, f64)| {
-                    weight * half * field.trace(step.dense(middle + half * at).as_slice())
+                    weight * half * field.trace(step.after(half * (1.0 + at)).as_slice())
                 };
                 points.iter().map(at).sum()
             };

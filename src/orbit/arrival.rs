@@ -72,10 +72,13 @@ impl Target<'_> {
             if !(ends[0] < 0.0 && ends[1] >= 0.0) {
                 return Ok(Control::Continue);
             }
-            let at = zero((step.t0, ends[0]), (step.t1, ends[1]), |t| {
-                self.beyond(step.dense(t).as_slice())
+            let after = zero((0.0, ends[0]), (step.length, ends[1]), |time| {
+                self.beyond(step.after(time).as_slice())
             });
-            if self.away(&step.dense(at)) < NEAR && found.is_none_or(|found| off(at) < off(found)) {
+            let at = (step.begin + after).hi();
+            if self.away(&step.after(after)) < NEAR
+                && found.is_none_or(|found| off(at) < off(found))
+            {
                 found = Some(at);
             }
             Ok(match found {

@@ -138,15 +138,18 @@ fn turns_within(
 ) -> Result<()> {
     /// Parts of the step: a variable that turns twice in one is missed.
     const PARTS: usize = 4;
-    let part = (step.t1 - step.t0) / PARTS as f64;
-    let time = |k: usize| step.t0 + part * k as f64;
-    let rates: Vec<Vector> = (0..=PARTS).map(|k| field.f(&step.dense(time(k)))).collect();
+    let (begin, end) = step.room();
+    let part = (end - begin) / PARTS as f64;
+    let time = |k: usize| begin + part * k as f64;
+    let rate = |t: f64| field.f(&step.at(t).0);
+    let rates: Vec<Vector> = (0..=PARTS).map(|k| rate(time(k))).collect();
     for (k, pair) in rates.windows(2).enumerate() {
         for (i, (before, after)) in pair[0].iter().zip(&pair[1]).enumerate() {
             if before * after < 0.0 {
-                let rate = |t: f64| (field.f(&step.dense(t))[i], f64::NAN);
-                let turn = bracketed_root("an extremum", time(k), time(k + 1), rate)?;
-                see(step.dense(turn).as_slice());
+                let turn = bracketed_root("an extremum", time(k), time(k + 1), |t| {
+                    (rate(t)[i], f64::NAN)
+                })?;
+                see(step.at(turn).0.as_slice());
             }
         }
     }

@@ -242,11 +242,14 @@ pub(super) fn completed(
     accuracy: &OrbitAccuracy,
     whole_cycle: bool,
 ) -> Result<FoundOrbit> {
+    /// The steps of closing what a search has met, in those of the search.
+    const CLOSING: usize = 4;
     let space = guesses.space;
     let mut orbits: Vec<Orbit> = Vec::new();
     let mut fine = match accuracy.method {
         Choice::Auto | Choice::Taylor => Tracer::taylor(FINE)?,
-        other => Tracer::new(other, accuracy.tolerances, accuracy.max_steps)?,
+        other => Tracer::new(other, accuracy.tolerances, accuracy.max_steps)?
+            .within(CLOSING.saturating_mul(accuracy.all_steps)),
     };
     let (mut done, mut fewer) = (0, whole_cycle);
     while done < guesses.closed.len() {

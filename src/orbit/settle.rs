@@ -45,19 +45,16 @@ pub(super) fn passages(
         duration,
         Some(&mut |step| {
             range = (range.0.min(step.y1[0]), range.1.max(step.y1[0]));
-            let begin = match step.series() {
+            match step.series() {
                 Some(series) => {
                     let direction = Some(surface.direction);
                     series.crossings(surface.section(), direction, &mut zeros, &mut here);
-                    step.t0
                 }
-                None => {
-                    crossings(field, &surface, step, &mut zeros, &mut here)?;
-                    0.0
-                }
-            };
+                None => crossings(field, &surface, step, &mut zeros, &mut here)?,
+            }
             for passage in here.drain(..) {
-                found.push((begin + passage.time, Vector::from_vec(passage.state)));
+                let time = (step.begin + passage.time).hi();
+                found.push((time, Vector::from_vec(passage.state)));
             }
             Ok(if found.len() >= most {
                 Control::Stop

@@ -132,7 +132,7 @@ impl ShootingNodes {
                 duration,
                 Some(&mut |step| {
                     let next = field.trace(step.y1).abs();
-                    let length = (step.t1 - step.t0).abs();
+                    let length = step.length.abs();
                     let to = Vector::from_column_slice(step.y1);
                     steps.push(TracedStep {
                         begin: begin + step.t0,

@@ -292,7 +292,7 @@ impl ShootingNodes {
             let mut from = start.clone();
             let mut observer = |step: &AnyStep<'_>| {
                 let next = field.trace(step.y1).abs();
-                let length = (step.t1 - step.t0).abs();
+                let length = step.length.abs();
                 steps.push(TracedStep {
                     begin: begin + step.t0,
                     length,

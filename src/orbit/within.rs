@@ -59,16 +59,16 @@ pub fn within_clusters(
             node,
             duration,
             Some(&mut |step| {
-                let length = step.t1 - step.t0;
+                let length = step.length;
                 for &(at, weight) in &points {
-                    let y = step.dense(step.t0 + at * length);
+                    let y = step.after(at * length);
                     for (sum, &(cluster, _)) in sums.iter_mut().zip(&split) {
                         let here = [y[0], y[cluster + 1]];
                         sum.add(rate(cluster, here), here, weight * length, error);
                     }
                 }
                 for &(at, weight) in &fewer {
-                    let y = step.dense(step.t0 + at * length);
+                    let y = step.after(at * length);
                     for (sum, &(cluster, _)) in sums.iter_mut().zip(&split) {
                         let rate = rate(cluster, [y[0], y[cluster + 1]]).value;
                         sum.by_fewer += weight * length * rate;

@@ -20,11 +20,12 @@ pub(crate) fn crossings(
     zeros: &mut Zeros,
     found: &mut Vec<Passage>,
 ) -> Result<()> {
+    let (begin, end) = step.room();
     let at = |t: f64| {
-        if t == step.t1 {
+        if t == end {
             Vector::from_column_slice(step.y1)
         } else {
-            step.dense(t)
+            step.at(t).0
         }
     };
     let knot = |t: f64| {
@@ -32,15 +33,15 @@ pub(crate) fn crossings(
         let slope = surface.rate(y.as_slice(), &field.f(&y));
         (t, surface.height(y.as_slice()), slope)
     };
-    let mut left = knot(step.t0);
+    let mut left = knot(begin);
     if zeros.sign == 0.0 {
         zeros.sign = if left.1 == 0.0 { left.2 } else { left.1 }.signum();
     }
     for part in 1..=PARTS {
         let t = if part == PARTS {
-            step.t1
+            end
         } else {
-            step.t0 + (step.t1 - step.t0) * part as f64 / PARTS as f64
+            begin + (end - begin) * part as f64 / PARTS as f64
         };
         let right = knot(t);
         let mut turn = None;
@@ -66,7 +67,7 @@ pub(crate) fn crossings(
                 };
                 if zeros.sign == surface.sign_behind() {
                     found.push(Passage {
-                        time: t,
+                        time: step.at(t).1,
                         crossing: surface.direction,
                         state: at(t).as_slice().to_vec(),
                     });

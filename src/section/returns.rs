@@ -230,7 +230,7 @@ impl Recorder {
         }
         let mut found = std::mem::take(&mut self.found);
         for Passage { time, state, .. } in found.drain(..) {
-            let state = Vector::from_vec(state);
+            let (time, state) = ((step.begin + time).hi(), Vector::from_vec(state));
             self.arrive(watched, Return { time, state }, see);
             if self.ended.is_some() {
                 return Ok(Control::Stop);
@@ -265,9 +265,6 @@ impl Recorder {
             &mut self.zeros,
             &mut self.found,
         );
-        for passage in &mut self.found {
-            passage.time = (series.begin() + passage.time).hi();
-        }
         Ok(())
     }
 
@@ -304,8 +301,8 @@ impl Recorder {
             self.range = (f64::INFINITY, f64::NEG_INFINITY);
         }
         for part in 1..WITHIN {
-            let time = step.t0 + (step.t1 - step.t0) * (f64::from(part) / f64::from(WITHIN));
-            self.reaches(surface.height(step.dense(time).as_slice()));
+            let time = step.length * (f64::from(part) / f64::from(WITHIN));
+            self.reaches(surface.height(step.after(time).as_slice()));
         }
     }
 

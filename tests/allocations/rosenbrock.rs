@@ -23,7 +23,7 @@ fn no_step_allocates() {
         let steps = rosenbrock.work().steps;
         let mut middle = State::<3>::zeros();
         let mut look = |step: &Step<'_, 3>| {
-            middle = (step.dense)(0.5 * (step.t0 + step.t1));
+            middle = step.dense(0.5 * (step.t0 + step.t1));
             Ok(Control::Continue)
         };
         let observed = measure(|| {

@@ -16,7 +16,7 @@ struct Peak {
 
 /// The state within a step where dtau/dt changes its sign, and when.
 fn turn<const N: usize>(field: &dyn VectorField<N>, step: &Step<'_, N>) -> (f64, State<N>) {
-    let rate = |t: f64| field.f(&(step.dense)(t))[0];
+    let rate = |t: f64| field.f(&step.dense(t))[0];
     let rises = rate(step.t0) > 0.0;
     let (mut near, mut far) = (step.t0, step.t1);
     for _ in 0..80 {
@@ -27,7 +27,7 @@ fn turn<const N: usize>(field: &dyn VectorField<N>, step: &Step<'_, N>) -> (f64,
             far = middle;
         }
     }
-    (far, (step.dense)(far))
+    (far, step.dense(far))
 }
 
 /// The first `count` cycles from `start`.

@@ -106,8 +106,8 @@ pub trait VectorField<const N: usize>: Send + Sync {
         false
     }
 
-    /// A state at the end of a step of this length, with the time there if that is a variable: the sum of what a method adds up in a step is
-    /// rounded, and over a million steps time would be late by more than the tolerance.
+    /// A state at the end of a step in which the double next to the time grows by h, with the time there if that is a variable: the sum of what a
+    /// method adds up in a step is rounded, and over a million steps time would be late by more than the tolerance.
     fn timed(&self, mut end: State<N>, begin: &State<N>, h: f64) -> State<N> {
         if self.last_is_time() {
             let last = self.dimension() - 1;

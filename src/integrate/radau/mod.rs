@@ -163,17 +163,18 @@ impl Radau {
             (variables(&f), jacobian),
             (free.map(|(places, _)| places), last),
         );
-        drive(&mut stages, t, length, self.max_steps, |stages, t0, t1| {
+        drive(&mut stages, t, length, self.max_steps, |stages, time| {
             let Some(observer) = observer.as_mut() else {
                 return Ok(Control::Continue);
             };
-            let dense = |t: f64| state::<N>(stages.dense((t - t0) / (t1 - t0)).as_slice());
             observer(&Step {
-                t0,
+                t0: time.begin.hi(),
                 y0: &state(stages.y.as_slice()),
-                t1,
+                t1: time.end.hi(),
                 y1: &state(stages.end().as_slice()),
-                dense: &dense,
+                begin: time.begin,
+                length: time.length,
+                continuous: &|time| state(stages.after(time).as_slice()),
                 reach: f64::INFINITY,
                 expansion: None,
                 slips: None,

@@ -111,7 +111,9 @@ pub(super) struct Stages<'a> {
     next_columns: Matrix,
     next_volume: f64,
     ahead: (Vector, Matrix),
+    /// How long it is, and by how much the double next to the time grows.
     tried: f64,
+    clock: f64,
     /// Whether a step from here was refused.
     refused: bool,
     /// The last step and its Z, from which the next one is predicted.
@@ -162,14 +164,15 @@ impl<'a> Stages<'a> {
             jacobian,
             derivatives,
             tried: 0.0,
+            clock: 0.0,
             refused: false,
             last,
         }
     }
 
-    /// The state at a part of the tried step.
-    pub fn dense(&self, at: f64) -> Vector {
-        &self.y + &self.z * self.method.dense(at)
+    /// The state so long after the beginning of the tried step.
+    pub fn after(&self, time: f64) -> Vector {
+        &self.y + &self.z * self.method.dense(time / self.tried)
     }
 
     /// The end of the tried step.
@@ -302,7 +305,7 @@ impl<'a> Stages<'a> {
         }
         self.next = &self.y + self.z.column(count - 1);
         let (next, y) = (self.next.as_mut_slice(), self.y.as_slice());
-        self.field.timed(next, y, h);
+        self.field.timed(next, y, self.clock);
         let scale = h * self.method.damping;
         let of_slope = |f: &Vector, slopes: &Matrix, method: &Coefficients| {
             let off = f - slopes * &method.at_begin;
@@ -423,8 +426,8 @@ impl Steppable for Stages<'_> {
         self.field.underflow(t, h, self.y.as_slice())
     }
 
-    fn attempt(&mut self, h: f64) -> Option<f64> {
-        self.tried = h;
+    fn attempt(&mut self, h: f64, clock: f64) -> Option<f64> {
+        (self.tried, self.clock) = (h, clock);
         self.predict(h);
         if !self.solve(h) {
             self.z.fill(0.0);

@@ -224,8 +224,8 @@ impl<const N: usize> Rosenbrock<N> {
             t,
             h,
             self.max_steps,
-            |moved, t0, t1| match observer.as_mut() {
-                Some(observer) => moved.show(t0, t1, observer),
+            |moved, time| match observer.as_mut() {
+                Some(observer) => moved.show(time, observer),
                 None => Ok(Control::Continue),
             },
         )?;
@@ -261,7 +261,7 @@ impl<const N: usize> Rosenbrock<N> {
             what: "the second derivative of the right-hand side",
             t: t.0,
         })?;
-        drive(&mut bundle, t, h, self.max_steps, |_, _, _| {
+        drive(&mut bundle, t, h, self.max_steps, |_, _| {
             Ok(Control::Continue)
         })?;
         Ok(bundle.state_and_tangent())

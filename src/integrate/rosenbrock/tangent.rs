@@ -175,7 +175,7 @@ impl<S: Scheme, const N: usize, const KEPT: usize> Steppable for Bundle<'_, S, N
     }
 
     #[inline]
-    fn attempt(&mut self, h: f64) -> Option<f64> {
+    fn attempt(&mut self, h: f64, clock: f64) -> Option<f64> {
         let tableau = self.scheme.tableau();
         let count = tableau.stages;
         self.work.factorisations += 1;
@@ -201,7 +201,7 @@ impl<S: Scheme, const N: usize, const KEPT: usize> Steppable for Bundle<'_, S, N
         self.last_f = stepping.newest;
         let next = combination(self.y, &tableau.m, count, &self.u);
         self.next = (
-            self.field.timed(next, &self.y, h),
+            self.field.timed(next, &self.y, clock),
             combination(self.tangent, &tableau.m, count, self.v),
         );
         let error = combination(State::zeros(), &tableau.e, count, &self.u);

@@ -1,7 +1,7 @@
 //! One step of the state alone.
 
 use super::control::{MayErr, error_norm};
-use super::drive::Steppable;
+use super::drive::{Steppable, TimeStep};
 use super::factors::Factors;
 use super::stages::{Linearisation, Scheme, Staged, Stages, combination, error_order};
 use crate::error::Error;
@@ -79,24 +79,25 @@ impl<'a, S: Scheme, const N: usize> StepState<'a, S, N> {
         &self.y
     }
 
-    /// The tried step from t0 to t1, as an observer sees it.
-    pub fn show<R>(&self, t0: f64, t1: f64, observer: impl FnOnce(&Step<'_, N>) -> R) -> R {
-        let dense = |t: f64| {
-            let theta = (t - t0) / (t1 - t0);
+    /// The tried step, as an observer sees it.
+    pub fn show<R>(&self, time: &TimeStep, observer: impl FnOnce(&Step<'_, N>) -> R) -> R {
+        let continuous = |after: f64| {
             interpolate(
                 self.scheme.tableau(),
-                theta,
+                after / time.length,
                 &self.y,
                 &self.next,
                 &self.stages,
             )
         };
         observer(&Step {
-            t0,
+            t0: time.begin.hi(),
             y0: &self.y,
-            t1,
+            t1: time.end.hi(),
             y1: &self.next,
-            dense: &dense,
+            begin: time.begin,
+            length: time.length,
+            continuous: &continuous,
             reach: f64::INFINITY,
             expansion: None,
             slips: None,
@@ -122,7 +123,7 @@ impl<S: Scheme, const N: usize> Steppable for StepState<'_, S, N> {
     }
 
     #[inline]
-    fn attempt(&mut self, h: f64) -> Option<f64> {
+    fn attempt(&mut self, h: f64, clock: f64) -> Option<f64> {
         let tableau = self.scheme.tableau();
         self.work.factorisations += 1;
         let factors = Factors::shifted(
@@ -143,7 +144,7 @@ impl<S: Scheme, const N: usize> Steppable for StepState<'_, S, N> {
         stepping.all_stages(self.scheme);
         self.last_f = stepping.newest;
         let next = combination(self.y, &tableau.m, tableau.stages, &self.stages);
-        self.next = self.field.timed(next, &self.y, h);
+        self.next = self.field.timed(next, &self.y, clock);
         let error = combination(State::zeros(), &tableau.e, tableau.stages, &self.stages);
         error_norm(self.may_err, &error, &self.y, &self.next)
     }

@@ -140,7 +140,6 @@ impl Batch {
                         (expansion.begin, expansion.length) = (begin, steps[lane]);
                         &expansion
                     });
-                    let dense = |time: f64| State::from(made.state(made.since_begin(time)));
                     let control = observer(
                         here.run,
                         &Step {
@@ -148,7 +147,9 @@ impl Batch {
                             y0: &here.y,
                             t1: here.clock.now.hi(),
                             y1: &end,
-                            dense: &dense,
+                            begin,
+                            length: steps[lane],
+                            continuous: &|time| State::from(made.state(time)),
                             reach: batch_solution.reaches()[lane],
                             expansion: Some(&made),
                             slips: None,

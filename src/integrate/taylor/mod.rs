@@ -351,14 +351,15 @@ impl Taylor {
                     *y = State::from(made.state(0.0));
                 }
                 let end = State::from(solution.state());
-                let dense = |time: f64| State::from(made.state(made.since_begin(time)));
                 let slips = || solution.slips(accuracy.order, h.hi());
                 let control = observer(&Step {
                     t0: before,
                     y0: y,
                     t1: clock.now.hi(),
                     y1: &end,
-                    dense: &dense,
+                    begin,
+                    length: h.hi(),
+                    continuous: &|time| State::from(made.state(time)),
                     reach: f64::INFINITY,
                     expansion: Some(&made),
                     slips: Some(&|| slips().map(|slips| unseen.and(slips))),

@@ -27,16 +27,16 @@ pub(super) fn slips<const N: usize>(
     before: &Slips,
     t: f64,
 ) -> Slips {
-    if t == step.t1
-        && let Some(within) = step.slips()
-    {
+    let is_end = t == step.t1;
+    if is_end && let Some(within) = step.slips() {
         return [0, 1].map(|i| before[i] + within[i]);
     }
     let within = match step.series() {
         // The ends of steps are known better than to the rounding of t.
-        Some(series) if t == step.t1 => series.slips(series.length),
+        Some(series) if is_end => series.slips(series.length),
         Some(series) => series.slips(series.since_begin(t)),
-        None => quadrature(field, step, t),
+        None if is_end => quadrature(field, step, step.length),
+        None => quadrature(field, step, step.since_begin(t)),
     };
     sum(before, within)
 }
@@ -45,12 +45,11 @@ pub(super) fn sum(before: &Slips, within: [f64; 2]) -> Slips {
     [0, 1].map(|i| before[i] + within[i])
 }
 
-/// The slips from the beginning of the step to t, along the dense output.
-fn quadrature<const N: usize>(field: &dyn Driven<N>, step: &Step<'_, N>, t: f64) -> [f64; 2] {
-    let h = t - step.t0;
+/// The slips within a time h from the beginning of the step, along the dense output.
+fn quadrature<const N: usize>(field: &dyn Driven<N>, step: &Step<'_, N>, h: f64) -> [f64; 2] {
     let mut slips = [0.0; 2];
     for (node, weight) in GAUSS {
-        let v = field.slip_rates(&(step.dense)(step.t0 + node * h));
+        let v = field.slip_rates(&step.after(node * h));
         for (slip, v) in slips.iter_mut().zip(v) {
             *slip += weight * h * v;
         }
@@ -60,11 +59,11 @@ fn quadrature<const N: usize>(field: &dyn Driven<N>, step: &Step<'_, N>, t: f64)
 
 /// The dense output, and exactly the step's own states at its ends.
 pub(super) fn at<const N: usize>(step: &Step<'_, N>, t: f64) -> State<N> {
-    if t == step.t0 {
-        *step.y0
-    } else if t == step.t1 {
+    if t == step.t1 {
         *step.y1
+    } else if t == step.t0 {
+        *step.y0
     } else {
-        (step.dense)(t)
+        step.dense(t)
     }
 }

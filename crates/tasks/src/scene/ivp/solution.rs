@@ -105,10 +105,10 @@ impl IvpSolution {
                 }
             }
             None => {
-                let length = step.t1 - step.t0;
+                let length = step.length;
                 self.coefficients.extend(interpolated(step, n, degree));
                 Piece {
-                    begin: DoubleDouble::from(step.t0),
+                    begin: step.begin,
                     length,
                     scale: length,
                     basis: Basis::Chebyshev,
@@ -273,18 +273,16 @@ fn interpolated(step: &AnyStep<'_>, n: usize, degree: usize) -> Vec<f64> {
     const ROOM: f64 = 1e4;
     /// What is left of the errors of the points falls by more than 10 each time.
     const CORRECTIONS: usize = 3;
-    let (t0, length) = (step.t0, step.t1 - step.t0);
+    let (t0, length) = (step.t0, step.length);
     let angle = |k: usize| PI * (2 * k + 1) as f64 / (2 * degree + 2) as f64;
-    let times = (0..=degree).map(|k| t0 + 0.5 * length * (1.0 + angle(k).cos()));
-    let times: Vec<f64> = times.collect();
+    let times = (0..=degree).map(|k| 0.5 * length * (1.0 + angle(k).cos()));
     let spacing = f64::EPSILON * t0.abs().max(step.t1.abs());
-    // Times are rounded, in a short step by much of it: the polynomial is corrected by what it is off where the points really are.
-    let corrections = if length.abs() > ROOM * spacing {
-        CORRECTIONS
-    } else {
-        0
-    };
-    let values: Vec<_> = times.iter().map(|&t| step.dense(t)).collect();
+    // A solver may round times, in a short step by much of it: the polynomial is corrected by what it is off where the points really are.
+    let has_room = length.abs() > ROOM * spacing;
+    let times = times.map(|time| if has_room { (t0 + time) - t0 } else { time });
+    let times: Vec<f64> = times.collect();
+    let corrections = if has_room { CORRECTIONS } else { 0 };
+    let values: Vec<_> = times.iter().map(|&time| step.after(time)).collect();
     let mut coefficients = vec![0.0; n * (degree + 1)];
     for (i, of_one) in coefficients.chunks_mut(degree + 1).enumerate() {
         let mut off: Vec<f64> = values.iter().map(|y| y[i]).collect();
@@ -296,7 +294,7 @@ fn interpolated(step: &AnyStep<'_>, n: usize, degree: usize) -> Vec<f64> {
             }
             if correction < corrections {
                 for ((off, y), t) in off.iter_mut().zip(&values).zip(&times) {
-                    *off = y[i] - clenshaw(of_one, 2.0 * (t - t0) / length - 1.0);
+                    *off = y[i] - clenshaw(of_one, 2.0 * t / length - 1.0);
                 }
             }
         }

@@ -229,10 +229,13 @@ fn slips(
             interfaces.map(|i| series.slip(i, time)).collect()
         }
         None => {
-            let h = t - step.t0;
+            let h = match t == step.t1 {
+                true => step.length,
+                false => step.since_begin(t),
+            };
             let mut slips = vec![0.0; before.len()];
             for (node, weight) in GAUSS {
-                let rates = system.slip_rates(step.dense(step.t0 + node * h).as_slice());
+                let rates = system.slip_rates(step.after(node * h).as_slice());
                 for (slip, v) in slips.iter_mut().zip(rates) {
                     *slip += weight * h * v;
                 }
