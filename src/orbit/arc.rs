@@ -125,7 +125,7 @@ fn log_determinant(mut m: Matrix) -> f64 {
 /// What makes arcs.
 pub struct Tracer {
     method: AnyIntegrator,
-    /// The same method with a coarse tolerance, while iterations are far from their end.
+    /// The same method with a coarse relative tolerance, while iterations are far from their end.
     coarse: Option<AnyIntegrator>,
     is_coarse: bool,
     choice: Choice,
@@ -156,7 +156,8 @@ impl WorkBound {
     }
 }
 
-/// The coarse tolerance of flows and their derivatives while an iteration is far from its end.
+/// The coarse relative tolerance of flows and their derivatives while an iteration is far from its end. The absolute one stays: what is small may set the
+/// pace.
 const COARSE: f64 = 1e-8;
 /// The absolute tolerance of the implicit method over its relative one. In relaxation oscillations a variable that is far below its unit for most of
 /// the time sets the pace of the others; below a hundredth the least of the relative tolerances leaves nothing but rounding.
@@ -246,14 +247,11 @@ impl Tracer {
         self
     }
 
-    /// From now on with a coarse tolerance, or again with its own.
+    /// From now on with a coarse relative tolerance, or again with its own.
     pub(super) fn coarsely(&mut self, yes: bool) {
         if yes && self.coarse.is_none() {
-            let Tolerances { rtol, atol, .. } = self.tolerances;
-            let times = (COARSE / rtol).max(1.0);
             let tolerances = Tolerances {
-                rtol: times * rtol,
-                atol: times * atol,
+                rtol: COARSE.max(self.tolerances.rtol),
                 ..self.tolerances
             };
             self.coarse = AnyIntegrator::new(self.choice, tolerances, self.max_steps).ok();
