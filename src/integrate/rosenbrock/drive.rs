@@ -53,6 +53,7 @@ pub(crate) fn drive<M: Steppable>(
     let mut controller = Controller::new(carried.error_order());
     let mut tried = 0;
     let mut refused = None;
+    // Whether steps are too short for the doubles around the time; and whether the last one was refused as it led where there are no numbers.
     let (mut within_spike, mut beyond) = (false, false);
     while now != DoubleDouble::from(end) {
         let t = now.hi();
