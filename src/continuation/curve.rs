@@ -114,6 +114,11 @@ pub trait SolutionCurve {
         false
     }
 
+    /// Whether the curve goes straight on from a point to the next one. Then slopes that take much work are left out where values change little.
+    fn is_straight(&self, _: &CurveStep<Self::Point>) -> bool {
+        true
+    }
+
     /// The slopes along the curve of all that is watched, where there are such, on a step of this length.
     fn slopes(
         &mut self,

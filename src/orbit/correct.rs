@@ -131,6 +131,8 @@ pub struct Corrector<'a> {
     /// The tolerances of an explicit and of an implicit method, and the bounds on the steps of an arc and of all, where the method is the one for each
     /// orbit.
     for_each: Option<([f64; 2], (usize, usize))>,
+    /// Whether corrections begin with coarse flows.
+    coarse: bool,
 }
 
 impl<'a> Corrector<'a> {
@@ -156,6 +158,7 @@ impl<'a> Corrector<'a> {
             family,
             tracer: Tracer::limited(tolerance, steps.0, steps.1)?,
             for_each: family.is_any_system().then_some(([tolerance; 2], steps)),
+            coarse: true,
         })
     }
 
@@ -181,6 +184,7 @@ impl<'a> Corrector<'a> {
             family,
             tracer,
             for_each: None,
+            coarse: true,
         }
     }
 
@@ -309,7 +313,13 @@ impl<'a> Corrector<'a> {
         guess.shooting.checked(self.family.dimension())?;
         self.suit(&guess)?;
         let mut reached = (0, f64::INFINITY);
-        let found = self.newton((planes, guess), free, conditions, goal, &mut reached);
+        let again = guess.clone();
+        let mut found = self.newton((planes, guess), free, conditions, goal, &mut reached);
+        if found.is_none() && std::mem::take(&mut self.coarse) {
+            found = self.newton((planes, again), free, conditions, goal, &mut reached);
+            // Where the fine flows have found what the coarse ones did not they are used from now on.
+            self.coarse = found.is_none();
+        }
         found.ok_or(Error::NotConverged {
             what: "the periodic orbit",
             iterations: reached.0,
@@ -332,11 +342,11 @@ impl<'a> Corrector<'a> {
         let mut ways = Vec::new();
         let (mut first, mut last) = (f64::INFINITY, f64::INFINITY);
         let tested = conditions.iter().any(|one| test_function(one).is_some());
-        let is_large = planes.is_some() && site.shooting.extent() > LARGE;
+        let may_be_coarse = self.coarse && planes.is_some() && site.shooting.extent() > LARGE;
         // What the next correction will be.
         let mut expected = f64::INFINITY;
         for iterations in 1..=goal.iterations {
-            let coarse = !tested && expected > FAR && is_large;
+            let coarse = !tested && expected > FAR && may_be_coarse;
             self.tracer.coarsely(coarse);
             let made = self.linear_at(planes, &mut site, &ways, free);
             self.tracer.coarsely(false);

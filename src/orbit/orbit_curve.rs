@@ -64,6 +64,8 @@ const SHORTEST: f64 = 1e-9;
 const OFF: f64 = 0.03;
 /// The least cosine between the directions before and after a step.
 const TURN: f64 = 0.7;
+/// And where a step has gone straight on.
+const STRAIGHT: f64 = 0.95;
 /// Progress of the last steps, as a part of the way.
 const PROGRESS: f64 = 2e-7;
 /// By how much the time to the next plane is expected to change in a step, at most; and the period, which a second time around doubles.
@@ -337,6 +339,12 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
 
     fn is_costly(&self, watch: WatchedFunction) -> bool {
         matches!(watch, WatchedFunction::TestFunction(_))
+    }
+
+    fn is_straight(&self, step: &CurveStep<DirectedPoint>) -> bool {
+        let goes_on =
+            |&i: &usize| step.from.direction.parameters[i] * step.to.direction.parameters[i] > 0.0;
+        self.cosine(&step.from, &step.to) > STRAIGHT && self.settings.free.iter().all(goes_on)
     }
 
     /// Along a curve of bifurcations a turn has no condition of its own.
