@@ -10,6 +10,8 @@ const ATTEMPTS: usize = 12;
 /// next to it.
 const BEYOND: f64 = 0.1;
 const WITHIN: f64 = 1e-6;
+/// What the values at both ends of a bracket have shrunk to, as a part of what they were, where there is a zero within.
+const SHRUNK: f64 = 0.05;
 /// Evaluations for one zero in a bracket, which at least halves with every third.
 const EVALUATIONS: usize = 100;
 
@@ -58,7 +60,18 @@ pub(super) fn landed<C: SolutionCurve>(
         *end = Sample { at, point, value };
         at = 0.5 * (low.at + high.at);
     }
-    Ok(None)
+    // At a branch point the condition is singular: there the values have gone to zero from both sides, as at no pole and in no noise.
+    let all = zero.ends.each_ref().map(|end| end.value);
+    let least = SHRUNK * all[0].abs().min(all[1].abs());
+    if low.value.abs().max(high.value.abs()) > least {
+        return Ok(None);
+    }
+    let nearer = if low.value.abs() < high.value.abs() {
+        low
+    } else {
+        high
+    };
+    Ok(Some((nearer.at, nearer.point)))
 }
 
 /// In the bracket, by inverse quadratic interpolation on the distance (Chandrupatla 1997).

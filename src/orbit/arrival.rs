@@ -24,7 +24,7 @@ struct Target<'a> {
 const LATE: f64 = 8.0;
 const NEAR: f64 = 0.3;
 /// A flow that takes so many times the steps of the arc before, and so many more, has left the orbit for good.
-const MORE: (usize, usize) = (10, 50);
+const MORE: (usize, usize) = (10, 1000);
 
 /// What becomes of the flow from a node.
 enum Arrival {

@@ -6,10 +6,13 @@
 use super::continuation_point::TangentVector;
 use super::correct::{Condition, Corrector, Goal, Regular};
 use super::orbit_curve::{DirectedPoint, OrbitCurve, PalcSettings, WatchedFunction};
+use super::test_function::TestFunction;
 use crate::continuation::CurveStep;
 
 /// Values beyond this are no noise. Of turns nothing can be said by their values.
 pub(super) const CLEAR: f64 = 1e-5;
+/// On shorter steps they may be: beside a homoclinic orbit multipliers change by powers of ten within the last digits of the orbit.
+const SHORT: f64 = 1e-6;
 
 /// The distances to both sides that are tried, the nearest first, in units of the step.
 const PARTS: [f64; 3] = [0.125, 0.5, 1.0];
@@ -29,7 +32,11 @@ pub(super) fn certain(
     step: &CurveStep<DirectedPoint>,
 ) -> bool {
     match watch {
-        WatchedFunction::TestFunction(_) if values.iter().all(|value| value.abs() > CLEAR) => {
+        WatchedFunction::TestFunction(_)
+            if (watch == WatchedFunction::TestFunction(TestFunction::Fold)
+                || step.length > SHORT)
+                && values.iter().all(|value| value.abs() > CLEAR) =>
+        {
             return true;
         }
         WatchedFunction::Value(..) => return true,
