@@ -135,6 +135,20 @@ fn a_branch_ends_at_the_period_of_a_stiff_orbit() {
     assert!(off < 1e-10 * known, "{off}");
 }
 
+/// From a start far off any orbit a trial of Newton's method has an arc of millions of steps.
+#[test]
+fn a_search_for_a_stiff_orbit_ends() {
+    let file = "tests/data/cases/brusselator-stiff.toml";
+    let asked = format!("orbit --system {file} --set B=1000 --start 0.00117,125000 -q");
+    let ended = command::twinslip(&asked);
+    assert_eq!(ended.code, 1, "{}", ended.err);
+    assert!(
+        ended.err.contains("settles on no periodic orbit"),
+        "{}",
+        ended.err
+    );
+}
+
 /// At a pitchfork of orbits two directions are as good as one another, and the parameter may seem to turn there. No fold can be solved for then.
 #[test]
 fn pitchforks_of_orbits_are_no_folds() {

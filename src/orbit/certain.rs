@@ -3,8 +3,9 @@
 //! At a fold the parameter turns: on both sides of it, it is less, or it is greater, than at the fold. Where a branch is
 //! vertical, as at a degenerate Hopf point, the parameter's slope is noise and changes its sign again and again.
 
+use super::conditions::Condition;
 use super::continuation_point::TangentVector;
-use super::correct::{Condition, Corrector, Goal, Regular};
+use super::correct::{Corrector, Goal, Regular};
 use super::orbit_curve::{DirectedPoint, OrbitCurve, PalcSettings, WatchedFunction};
 use super::test_function::TestFunction;
 use crate::continuation::CurveStep;

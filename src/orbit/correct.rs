@@ -6,6 +6,7 @@
 //! a test function for a bifurcation, a value for a parameter. At folds nothing special happens.
 
 use super::arc::Tracer;
+use super::conditions::{Condition, KnownSpectrum, checked, weights};
 use super::continuation_point::{ContinuationPoint, TangentVector};
 use super::family::ParametrisedField;
 use super::gradients::{carried, test_function};
@@ -14,23 +15,11 @@ use super::multipliers::eigenvalues_of;
 use super::periodic_schur::LogEigenvalue;
 use super::shooting_nodes::ShootingNodes;
 use super::stiffness::method_for;
-use super::test_function::{Spectrum, TestFunction};
+use super::test_function::Spectrum;
 use crate::error::{Error, Result};
 use crate::field::Matrix;
 use crate::integrate::{Choice, MAX_STEPS};
-use nalgebra::{Matrix2, Vector2};
 use std::sync::Arc as Shared;
-
-/// What an orbit is to meet.
-#[derive(Debug, Clone, Copy)]
-pub enum Condition<'a> {
-    /// To lie in the plane through a site with as many nodes, across a direction.
-    Plane(&'a TangentVector, &'a ContinuationPoint),
-    /// The coordinate of this parameter to have this value.
-    Parameter(usize, f64),
-    /// A bifurcation.
-    TestFunction(TestFunction),
-}
 
 /// An orbit with what is known of its surroundings.
 #[derive(Debug, Clone)]
@@ -313,10 +302,15 @@ impl<'a> Corrector<'a> {
         guess.shooting.checked(self.family.dimension())?;
         self.suit(&guess)?;
         let mut reached = (0, f64::INFINITY);
-        let again = guess.clone();
-        let mut found = self.newton((planes, guess), free, conditions, goal, &mut reached);
-        if found.is_none() && std::mem::take(&mut self.coarse) {
-            found = self.newton((planes, again), free, conditions, goal, &mut reached);
+        let tested = conditions.iter().any(|one| test_function(one).is_some());
+        let is_large = guess.shooting.extent() > LARGE;
+        let coarse = self.coarse && planes.is_some() && is_large && !tested;
+        let again = coarse.then(|| guess.clone());
+        let from = (planes, guess);
+        let mut found = self.newton(from, free, conditions, (goal, coarse), &mut reached);
+        if let (None, Some(again)) = (&found, again) {
+            let from = (planes, again);
+            found = self.newton(from, free, conditions, (goal, false), &mut reached);
             // Where the fine flows have found what the coarse ones did not they are used from now on.
             self.coarse = found.is_none();
         }
@@ -328,13 +322,13 @@ impl<'a> Corrector<'a> {
         })
     }
 
-    /// The same; `reached` are the iterations made and the last correction.
+    /// The same, beginning with coarse flows or not; `reached` are the iterations made and the last correction.
     fn newton(
         &mut self,
         (planes, guess): (Option<&Linear>, ContinuationPoint),
         free: &[usize],
         conditions: &[Condition<'_>],
-        goal: Goal,
+        (goal, coarse): (Goal, bool),
         reached: &mut (usize, f64),
     ) -> Option<Regular> {
         let mut site = guess;
@@ -342,11 +336,10 @@ impl<'a> Corrector<'a> {
         let mut ways = Vec::new();
         let (mut first, mut last) = (f64::INFINITY, f64::INFINITY);
         let tested = conditions.iter().any(|one| test_function(one).is_some());
-        let may_be_coarse = self.coarse && planes.is_some() && site.shooting.extent() > LARGE;
         // What the next correction will be.
         let mut expected = f64::INFINITY;
         for iterations in 1..=goal.iterations {
-            let coarse = !tested && expected > FAR && may_be_coarse;
+            let coarse = coarse && expected > FAR;
             self.tracer.coarsely(coarse);
             let made = self.linear_at(planes, &mut site, &ways, free);
             self.tracer.coarsely(false);
@@ -505,64 +498,4 @@ impl<'a> Corrector<'a> {
             linear: Shared::new(linear),
         })
     }
-}
-
-/// Whether all test functions among the conditions are test functions here.
-fn checked(conditions: &[Condition<'_>], dimension: usize) -> Result<()> {
-    let mut test_functions = conditions.iter().filter_map(test_function);
-    test_functions.try_for_each(|one| one.checked(dimension))
-}
-
-/// What is known of the test functions among the conditions.
-struct KnownSpectrum<'a> {
-    spectrum: Option<&'a Spectrum>,
-    gradients: &'a [TangentVector],
-    by_closing: &'a [f64],
-}
-
-/// How far to go in every direction for the conditions to hold, to first order.
-fn weights(
-    site: &ContinuationPoint,
-    closing: &TangentVector,
-    along: &[TangentVector],
-    conditions: &[Condition<'_>],
-    known: &KnownSpectrum<'_>,
-) -> Option<Vec<f64>> {
-    let mut test_functions = known.gradients.iter().zip(known.by_closing);
-    let mut rows = Vec::with_capacity(conditions.len());
-    for condition in conditions {
-        let (slopes, missing): (Vec<f64>, f64) = match condition {
-            Condition::Plane(across, origin) => (
-                along.iter().map(|t| across.dot(t)).collect(),
-                -across.dot(&site.from(origin)) - across.dot(closing),
-            ),
-            Condition::Parameter(i, value) => (
-                along.iter().map(|t| t.parameters[*i]).collect(),
-                value - site.at[*i] - closing.parameters[*i],
-            ),
-            Condition::TestFunction(test_function) => {
-                let (gradient, by_closing) = test_functions.next()?;
-                (
-                    along.iter().map(|t| gradient.dot(t)).collect(),
-                    -test_function.of(known.spectrum?) - by_closing,
-                )
-            }
-        };
-        rows.push((slopes, missing));
-    }
-    combination(&rows)
-}
-
-/// The weights of one or two directions: of every condition, what they change it by and what is missing to it.
-pub(super) fn combination(rows: &[(Vec<f64>, f64)]) -> Option<Vec<f64>> {
-    match rows {
-        [(a, b)] if a.len() == 1 => Some(vec![b / a[0]]),
-        [(a, b), (c, d)] if a.len() == 2 => {
-            let m = Matrix2::new(a[0], a[1], c[0], c[1]);
-            let w = m.lu().solve(&Vector2::new(*b, *d))?;
-            Some(vec![w[0], w[1]])
-        }
-        _ => None,
-    }
-    .filter(|w: &Vec<f64>| w.iter().all(|w| w.is_finite()))
 }

@@ -248,8 +248,10 @@ pub(super) fn completed(
     let mut orbits: Vec<Orbit> = Vec::new();
     let mut fine = match accuracy.method {
         Choice::Auto | Choice::Taylor => Tracer::taylor(FINE)?,
-        other => Tracer::new(other, accuracy.tolerances, accuracy.max_steps)?
-            .within(CLOSING.saturating_mul(accuracy.all_steps)),
+        other => {
+            let steps = CLOSING.saturating_mul(accuracy.all_steps);
+            Tracer::new(other, accuracy.tolerances, accuracy.max_steps.min(steps))?.within(steps)
+        }
     };
     let (mut done, mut fewer) = (0, whole_cycle);
     while done < guesses.closed.len() {

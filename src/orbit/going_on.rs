@@ -1,8 +1,9 @@
 //! Whether a step along a branch of orbits has come to the next orbit: Newton's method may find one on another sheet of the branch, or on the way
 //! back. Both have been seen behind the sharp turns of canards and where a branch winds (Hindmarsh and Rose's model).
 
+use super::conditions::Condition;
 use super::continuation_point::{ContinuationPoint, TangentVector};
-use super::correct::{Condition, Regular};
+use super::correct::Regular;
 use super::orbit_curve::{DirectedPoint, OrbitCurve, not_near};
 use super::test_function::TestFunction;
 use crate::error::Result;

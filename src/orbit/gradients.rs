@@ -1,7 +1,8 @@
 //! How test functions change as an orbit is moved, which Newton's method needs where one is among its conditions.
 
+use super::conditions::Condition;
 use super::continuation_point::{ContinuationPoint, TangentVector};
-use super::correct::{Condition, Corrector, Regular};
+use super::correct::{Corrector, Regular};
 use super::linear::{Free, Linear};
 use super::test_function::{Spectrum, TestFunction};
 

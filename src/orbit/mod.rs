@@ -4,6 +4,7 @@ mod arc;
 mod arrival;
 pub(crate) mod branch;
 mod certain;
+mod conditions;
 mod continuation_point;
 mod correct;
 mod crosscheck;
@@ -44,8 +45,9 @@ mod winding;
 mod within;
 
 pub use arc::{Arc, Tracer};
+pub use conditions::Condition;
 pub use continuation_point::{ContinuationPoint, TangentVector};
-pub use correct::{Condition, Corrector, Goal, Regular};
+pub use correct::{Corrector, Goal, Regular};
 pub use crosscheck::{Crosscheck, crosscheck, crosscheck_of};
 pub use extremes::ranges;
 pub(crate) use family::across_in_units;

@@ -5,8 +5,9 @@
 //! the conditions are that the orbit meets. Of the truncation error, which is no noise, this knows nothing: the tolerance must
 //! be of the order of rounding, or a second solution must tell.
 
+use super::conditions::{Condition, combination};
 use super::continuation_point::TangentVector;
-use super::correct::{Condition, Corrector, Regular, combination};
+use super::correct::{Corrector, Regular};
 use super::linear::Linear;
 use super::shooting::relative;
 use super::shooting_nodes::ShootingNodes;

@@ -1,8 +1,9 @@
 //! Periodic orbits as a curve that can be followed: along a branch, one parameter free, or a curve of bifurcations, with both.
 
 use super::certain::{CLEAR, certain};
+use super::conditions::Condition;
 use super::continuation_point::{ContinuationPoint, TangentVector};
-use super::correct::{Condition, Corrector, Goal, Regular};
+use super::correct::{Corrector, Goal, Regular};
 use super::new_nodes::no_nodes;
 use super::test_function::TestFunction;
 use super::winding::{Turns, quarter_turn};

@@ -1,7 +1,8 @@
 //! The small orbits beside a Hopf point, with which a branch of orbits begins.
 
+use super::conditions::Condition;
 use super::continuation_point::{ContinuationPoint, TangentVector};
-use super::correct::{Condition, Corrector, Goal};
+use super::correct::{Corrector, Goal};
 use super::orbit_curve::{Palc, PalcSettings};
 use super::shooting_nodes::ShootingNodes;
 use crate::error::Result;

@@ -1,0 +1,78 @@
+//! What an orbit is to meet, and how far it has to move for that.
+
+use super::continuation_point::{ContinuationPoint, TangentVector};
+use super::gradients::test_function;
+use super::test_function::{Spectrum, TestFunction};
+use crate::error::Result;
+use nalgebra::{Matrix2, Vector2};
+
+/// What an orbit is to meet.
+#[derive(Debug, Clone, Copy)]
+pub enum Condition<'a> {
+    /// To lie in the plane through a site with as many nodes, across a direction.
+    Plane(&'a TangentVector, &'a ContinuationPoint),
+    /// The coordinate of this parameter to have this value.
+    Parameter(usize, f64),
+    /// A bifurcation.
+    TestFunction(TestFunction),
+}
+
+/// Whether all test functions among the conditions are test functions here.
+pub(super) fn checked(conditions: &[Condition<'_>], dimension: usize) -> Result<()> {
+    let mut test_functions = conditions.iter().filter_map(test_function);
+    test_functions.try_for_each(|one| one.checked(dimension))
+}
+
+/// What is known of the test functions among the conditions.
+pub(super) struct KnownSpectrum<'a> {
+    pub spectrum: Option<&'a Spectrum>,
+    pub gradients: &'a [TangentVector],
+    pub by_closing: &'a [f64],
+}
+
+/// How far to go in every direction for the conditions to hold, to first order.
+pub(super) fn weights(
+    site: &ContinuationPoint,
+    closing: &TangentVector,
+    along: &[TangentVector],
+    conditions: &[Condition<'_>],
+    known: &KnownSpectrum<'_>,
+) -> Option<Vec<f64>> {
+    let mut test_functions = known.gradients.iter().zip(known.by_closing);
+    let mut rows = Vec::with_capacity(conditions.len());
+    for condition in conditions {
+        let (slopes, missing): (Vec<f64>, f64) = match condition {
+            Condition::Plane(across, origin) => (
+                along.iter().map(|t| across.dot(t)).collect(),
+                -across.dot(&site.from(origin)) - across.dot(closing),
+            ),
+            Condition::Parameter(i, value) => (
+                along.iter().map(|t| t.parameters[*i]).collect(),
+                value - site.at[*i] - closing.parameters[*i],
+            ),
+            Condition::TestFunction(test_function) => {
+                let (gradient, by_closing) = test_functions.next()?;
+                (
+                    along.iter().map(|t| gradient.dot(t)).collect(),
+                    -test_function.of(known.spectrum?) - by_closing,
+                )
+            }
+        };
+        rows.push((slopes, missing));
+    }
+    combination(&rows)
+}
+
+/// The weights of one or two directions: of every condition, what they change it by and what is missing to it.
+pub(super) fn combination(rows: &[(Vec<f64>, f64)]) -> Option<Vec<f64>> {
+    match rows {
+        [(a, b)] if a.len() == 1 => Some(vec![b / a[0]]),
+        [(a, b), (c, d)] if a.len() == 2 => {
+            let m = Matrix2::new(a[0], a[1], c[0], c[1]);
+            let w = m.lu().solve(&Vector2::new(*b, *d))?;
+            Some(vec![w[0], w[1]])
+        }
+        _ => None,
+    }
+    .filter(|w: &Vec<f64>| w.iter().all(|w| w.is_finite()))
+}
