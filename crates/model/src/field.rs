@@ -95,6 +95,12 @@ pub trait VectorField<const N: usize>: Send + Sync {
         None
     }
 
+    /// Whether an implicit method goes on through spikes that last for less than the spacing of the doubles around their time. Along those of interfaces not
+    /// all methods agree on what comes after one.
+    fn has_spikes(&self) -> bool {
+        true
+    }
+
     /// For every variable whether it is a factor of its own rate: solutions keep its sign, and what a step may err in it is counted relative
     /// to it alone.
     fn own_factors(&self) -> [bool; N] {

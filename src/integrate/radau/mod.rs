@@ -78,6 +78,10 @@ impl<const N: usize> StageField for Of<'_, N> {
         step_underflow(self.0, t, h, &state(y))
     }
 
+    fn has_spikes(&self) -> bool {
+        self.0.has_spikes()
+    }
+
     fn timed(&self, end: &mut [f64], begin: &[f64], h: f64) {
         let made = self.0.timed(state(end), &state(begin), h);
         end.copy_from_slice(&made.as_slice()[..end.len()]);

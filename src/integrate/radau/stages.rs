@@ -18,6 +18,8 @@ pub(super) trait StageField {
     fn jacobian(&self, y: &[f64], exact: bool, into: &mut Matrix);
     fn parameter_derivative(&self, y: &[f64], place: usize, into: &mut [f64]);
     fn underflow(&self, t: f64, h: f64, y: &[f64]) -> Error;
+    /// As [`crate::field::VectorField::has_spikes`].
+    fn has_spikes(&self) -> bool;
     /// As [`crate::field::VectorField::timed`].
     fn timed(&self, end: &mut [f64], begin: &[f64], h: f64);
 }
@@ -420,6 +422,10 @@ impl Steppable for Stages<'_> {
 
     fn work(&mut self) -> &mut Work {
         self.work
+    }
+
+    fn goes_through_spikes(&self) -> bool {
+        self.field.has_spikes()
     }
 
     fn underflow(&self, t: f64, h: f64) -> Error {

@@ -170,6 +170,10 @@ impl<S: Scheme, const N: usize, const KEPT: usize> Steppable for Bundle<'_, S, N
         self.work
     }
 
+    fn goes_through_spikes(&self) -> bool {
+        self.field.has_spikes()
+    }
+
     fn underflow(&self, t: f64, h: f64) -> Error {
         step_underflow(self.field, t, h, &self.y)
     }

@@ -60,6 +60,10 @@ impl<L: Law + Into<AnyLaw>> VectorField<2> for SingleInterface<L> {
         self.law.lasts().then(|| self.law.name())
     }
 
+    fn has_spikes(&self) -> bool {
+        false
+    }
+
     fn parametrised(&self) -> Option<&dyn Parametrised<2>> {
         Some(self)
     }

@@ -48,6 +48,10 @@ impl<L: Law + Into<AnyLaw>> VectorField<2> for Symmetric<L> {
         self.equivalent.lasting()
     }
 
+    fn has_spikes(&self) -> bool {
+        false
+    }
+
     fn parametrised(&self) -> Option<&dyn Parametrised<2>> {
         Some(self)
     }

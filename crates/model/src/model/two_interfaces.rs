@@ -58,6 +58,10 @@ impl<L: Law + Into<AnyLaw>> VectorField<3> for TwoInterfaces<L> {
         self.law.lasts().then(|| self.law.name())
     }
 
+    fn has_spikes(&self) -> bool {
+        false
+    }
+
     fn parametrised(&self) -> Option<&dyn Parametrised<3>> {
         Some(self)
     }

@@ -344,6 +344,10 @@ macro_rules! field_in_any_parameter {
                 self.in_loading().lasting()
             }
 
+            fn has_spikes(&self) -> bool {
+                false
+            }
+
             fn parametrised(&self) -> Option<&dyn Parametrised<$n>> {
                 Some(self)
             }
