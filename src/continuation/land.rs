@@ -60,7 +60,8 @@ pub(super) fn landed<C: SolutionCurve>(
         *end = Sample { at, point, value };
         at = 0.5 * (low.at + high.at);
     }
-    // At a branch point the condition is singular: there the values have gone to zero from both sides, as at no pole and in no noise.
+    // At a branch point Newton's method fails, as the condition is singular there. The values then tend to zero from both sides; at a pole, or in
+    // noise, they do not.
     let all = zero.ends.each_ref().map(|end| end.value);
     let least = SHRUNK * all[0].abs().min(all[1].abs());
     if low.value.abs().max(high.value.abs()) > least {

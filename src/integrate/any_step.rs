@@ -87,9 +87,9 @@ impl<'a> AnyStep<'a> {
         self.length.abs() < ROOM * f64::EPSILON * self.t0.abs().max(self.t1.abs())
     }
 
-    /// The time from the beginning to this time, within the step.
+    /// As [`Step::since_begin`].
     pub fn since_begin(&self, t: f64) -> f64 {
-        since(self.begin, self.length, t)
+        since((self.begin, self.t1, self.length), t)
     }
 
     /// The series at `t0`, of methods that step by one.
@@ -116,8 +116,6 @@ pub trait StepSeries {
     fn slip_rate(&self, interface: usize) -> &[f64];
     /// The slip of an interface up to a time after the beginning of the step ([`Expansion::slip`]).
     fn slip(&self, interface: usize, time: f64) -> f64;
-    /// The time from the beginning of the step to a time of the solution ([`Expansion::since_begin`]).
-    fn since_begin(&self, time: f64) -> f64;
     /// The state that these values of the variables stand for ([`Expansion::chart`]).
     fn state_of(&self, variables: &[f64]) -> Vector;
     /// Appends the zeros of a section within this step to `found` ([`Expansion::crossings`]).
@@ -161,10 +159,6 @@ impl<const N: usize> StepSeries for Expansion<N> {
 
     fn slip(&self, interface: usize, time: f64) -> f64 {
         self.slip(interface, time)
-    }
-
-    fn since_begin(&self, time: f64) -> f64 {
-        self.since_begin(time)
     }
 
     fn state_of(&self, variables: &[f64]) -> Vector {

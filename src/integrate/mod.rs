@@ -82,9 +82,9 @@ impl<'a, const N: usize> Step<'a, N> {
         self.after(self.since_begin(t))
     }
 
-    /// The time from the beginning to this time, within the step.
+    /// The time from the beginning to this time, within the step. Its end is known better than to the rounding of the time.
     pub fn since_begin(&self, t: f64) -> f64 {
-        since(self.begin, self.length, t)
+        since((self.begin, self.t1, self.length), t)
     }
 
     /// The series at `t0`, of methods that step by one.
@@ -98,8 +98,11 @@ impl<'a, const N: usize> Step<'a, N> {
     }
 }
 
-/// The time from the beginning of a step of this length to t, within the step.
-fn since(begin: DoubleDouble, length: f64, t: f64) -> f64 {
+/// [`Step::since_begin`] of a step with this beginning, end and length.
+fn since((begin, end, length): (DoubleDouble, f64, f64), t: f64) -> f64 {
+    if t == end {
+        return length;
+    }
     let time = (DoubleDouble::from(t) - begin).hi();
     time.clamp(length.min(0.0), length.max(0.0))
 }

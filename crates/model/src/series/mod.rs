@@ -212,11 +212,6 @@ impl<const N: usize> Expansion<N> {
         }
     }
 
-    /// The time from the beginning of the step to a time of the solution, to all digits of the difference.
-    pub fn since_begin(&self, time: f64) -> f64 {
-        (DoubleDouble::from(time) - self.begin).hi()
-    }
-
     /// The state at a time after the beginning of the step.
     pub fn state(&self, time: f64) -> [f64; N] {
         self.state_at(time / self.unit)

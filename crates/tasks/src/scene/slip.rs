@@ -27,16 +27,15 @@ pub(super) fn slips<const N: usize>(
     before: &Slips,
     t: f64,
 ) -> Slips {
-    let is_end = t == step.t1;
-    if is_end && let Some(within) = step.slips() {
+    if t == step.t1
+        && let Some(within) = step.slips()
+    {
         return [0, 1].map(|i| before[i] + within[i]);
     }
+    let time = step.since_begin(t);
     let within = match step.series() {
-        // The ends of steps are known better than to the rounding of t.
-        Some(series) if is_end => series.slips(series.length),
-        Some(series) => series.slips(series.since_begin(t)),
-        None if is_end => quadrature(field, step, step.length),
-        None => quadrature(field, step, step.since_begin(t)),
+        Some(series) => series.slips(time),
+        None => quadrature(field, step, time),
     };
     sum(before, within)
 }

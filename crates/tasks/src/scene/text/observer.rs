@@ -217,22 +217,13 @@ fn slips(
     before: &[DoubleDouble],
     t: f64,
 ) -> Vec<DoubleDouble> {
+    let h = step.since_begin(t);
     let within = match step.series() {
         Some(series) => {
-            // The ends of steps are known better than to the rounding of t.
-            let time = if t == step.t1 {
-                series.length()
-            } else {
-                series.since_begin(t)
-            };
             let interfaces = 0..before.len();
-            interfaces.map(|i| series.slip(i, time)).collect()
+            interfaces.map(|i| series.slip(i, h)).collect()
         }
         None => {
-            let h = match t == step.t1 {
-                true => step.length,
-                false => step.since_begin(t),
-            };
             let mut slips = vec![0.0; before.len()];
             for (node, weight) in GAUSS {
                 let rates = system.slip_rates(step.after(node * h).as_slice());
