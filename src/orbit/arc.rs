@@ -124,13 +124,10 @@ fn log_determinant(mut m: Matrix) -> f64 {
 
 /// What makes arcs.
 pub struct Tracer {
-    method: AnyIntegrator,
-    /// The same method with a coarse relative tolerance, while iterations are far from their end.
-    coarse: Option<AnyIntegrator>,
-    is_coarse: bool,
-    choice: Choice,
-    tolerances: Tolerances,
-    max_steps: usize,
+    /// With its own tolerances, and with a coarse relative one.
+    methods: [AnyIntegrator; 2],
+    /// Which of them is used.
+    used: usize,
     /// What a step may err by, in units of 1 + |y|.
     step_error: f64,
     bound: WorkBound,
@@ -176,13 +173,15 @@ impl Tracer {
             Choice::Auto => Choice::Taylor,
             other => other,
         };
+        let coarse = Tolerances {
+            rtol: COARSE.max(tolerances.rtol),
+            ..tolerances
+        };
+        let [own, coarse] =
+            [tolerances, coarse].map(|these| AnyIntegrator::new(choice, these, max_steps));
         Ok(Tracer {
-            method: AnyIntegrator::new(choice, tolerances, max_steps)?,
-            coarse: None,
-            is_coarse: false,
-            choice,
-            tolerances,
-            max_steps,
+            methods: [own?, coarse?],
+            used: 0,
             step_error: tolerances.rtol + tolerances.atol + ROUNDING,
             bound: WorkBound {
                 work: Work::default(),
@@ -193,12 +192,12 @@ impl Tracer {
 
     /// The method's name.
     pub fn name(&self) -> &'static str {
-        self.method.name()
+        self.methods[0].name()
     }
 
     /// Whether arcs come with derivatives in the parameters.
     pub(crate) fn differentiates(&self) -> bool {
-        self.method.differentiates()
+        self.methods[0].differentiates()
     }
 
     /// All work so far.
@@ -249,14 +248,7 @@ impl Tracer {
 
     /// From now on with a coarse relative tolerance, or again with its own.
     pub(super) fn coarsely(&mut self, yes: bool) {
-        if yes && self.coarse.is_none() {
-            let tolerances = Tolerances {
-                rtol: COARSE.max(self.tolerances.rtol),
-                ..self.tolerances
-            };
-            self.coarse = AnyIntegrator::new(self.choice, tolerances, self.max_steps).ok();
-        }
-        self.is_coarse = yes;
+        self.used = usize::from(yes);
     }
 
     /// The bound on all steps, where it is used up.
@@ -287,12 +279,8 @@ impl Tracer {
         field: &'f AnyField<'_>,
         free: &'f [usize],
     ) -> Result<Arcs<'f>> {
-        let method = match &mut self.coarse {
-            Some(coarse) if self.is_coarse => coarse,
-            _ => &mut self.method,
-        };
         Ok(Arcs {
-            made: method.arcs(field, free)?,
+            made: self.methods[self.used].arcs(field, free)?,
             step_error: self.step_error,
             bound: &mut self.bound,
         })
@@ -349,10 +337,7 @@ impl Tracer {
         observer: Option<AnyObserver<'_>>,
     ) -> Result<Vector> {
         self.bound.allowed(duration)?;
-        let method = match &mut self.coarse {
-            Some(coarse) if self.is_coarse => coarse,
-            _ => &mut self.method,
-        };
+        let method = &mut self.methods[self.used];
         let end = method.flow(field, (0.0, duration), start, observer);
         self.bound.work += method.work();
         end

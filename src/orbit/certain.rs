@@ -12,7 +12,8 @@ use crate::continuation::CurveStep;
 
 /// Values beyond this are no noise. Of turns nothing can be said by their values.
 pub(super) const CLEAR: f64 = 1e-5;
-/// On shorter steps they may be: beside a homoclinic orbit multipliers change by powers of ten within the last digits of the orbit.
+/// On steps that are shorter than this part of the orbit's extent they may be noise: beside a homoclinic orbit multipliers change by powers of ten
+/// within the last digits of the orbit.
 const SHORT: f64 = 1e-6;
 
 /// The distances to both sides that are tried, the nearest first, in units of the step.
@@ -35,7 +36,7 @@ pub(super) fn certain(
     match watch {
         WatchedFunction::TestFunction(_)
             if (watch == WatchedFunction::TestFunction(TestFunction::Fold)
-                || step.length > SHORT)
+                || step.length > SHORT * orbit.site.shooting.extent().min(1.0))
                 && values.iter().all(|value| value.abs() > CLEAR) =>
         {
             return true;

@@ -5,109 +5,34 @@ use clap::{Arg, Command};
 use std::fmt::Write;
 
 /// The options that most runs need, by the command's name.
-const MOST_USED: [(&str, &[&str]); 9] = [
-    (
-        "law",
-        &[
-            "law", "set", "from", "to", "ensemble", "si", "plot", "output",
-        ],
-    ),
+const MOST_USED: [(&str, &str); 9] = [
+    ("law", "law set from to ensemble si plot output"),
     (
         "integrate",
-        &[
-            "driving",
-            "stiffness",
-            "system",
-            "set",
-            "until",
-            "program",
-            "plot",
-            "output",
-        ],
+        "driving stiffness system set until program plot output",
     ),
     (
         "equilibria",
-        &[
-            "driving",
-            "stiffness",
-            "system",
-            "set",
-            "box",
-            "ensemble",
-            "si",
-            "output",
-        ],
+        "driving stiffness system set box ensemble si output",
     ),
     (
         "orbit",
-        &[
-            "driving",
-            "stiffness",
-            "system",
-            "set",
-            "symmetry",
-            "start",
-            "points",
-            "plot",
-        ],
+        "driving stiffness system set symmetry start points plot",
     ),
     (
         "section",
-        &[
-            "driving",
-            "stiffness",
-            "system",
-            "set",
-            "surface",
-            "lyapunov",
-            "plot",
-            "output",
-        ],
+        "driving stiffness system set surface lyapunov plot output",
     ),
-    (
-        "branch",
-        &[
-            "stiffness",
-            "system",
-            "set",
-            "along",
-            "from",
-            "to",
-            "plot",
-            "output",
-        ],
-    ),
+    ("branch", "stiffness system set along from to plot output"),
     (
         "locus",
-        &[
-            "stiffness-range",
-            "driving-range",
-            "system",
-            "in",
-            "range",
-            "plot",
-            "output",
-        ],
+        "stiffness-range driving-range system in range plot output",
     ),
     (
         "sweep",
-        &[
-            "driving",
-            "stiffness",
-            "grid",
-            "system",
-            "basin",
-            "resume",
-            "plot",
-            "output",
-        ],
+        "driving stiffness grid system basin resume plot output",
     ),
-    (
-        "fit",
-        &[
-            "law", "free", "set", "from", "to", "plot", "report", "output",
-        ],
-    ),
+    ("fit", "law free set from to plot report output"),
 ];
 /// Options whose first clause says too little.
 const IN_SHORT: [(&str, &str); 9] = [
@@ -143,13 +68,15 @@ pub fn asked_for(program: &Command, words: &[impl AsRef<str>]) -> Option<String>
         return None;
     }
     let name = words().next()?;
-    let of = |all: &'static [(&str, &[&str])]| all.iter().find(|(known, _)| *known == name);
-    let (name, options) = of(&MOST_USED)?;
-    let (_, examples) = EXAMPLES.iter().find(|(known, _)| known == name)?;
+    let [options, examples] = [MOST_USED, EXAMPLES].map(|all| {
+        let own = all.into_iter().find(|(known, _)| *known == name);
+        own.map(|(_, words)| words)
+    });
+    let (options, examples) = options.zip(examples)?;
     short_help(program.find_subcommand(name)?, examples, options)
 }
 
-fn short_help(command: &Command, examples: &str, options: &[&str]) -> Option<String> {
+fn short_help(command: &Command, examples: &str, options: &str) -> Option<String> {
     let name = command.get_name();
     let mut text = format!("{}\n\n", command.get_about()?);
     let runs = examples
@@ -159,12 +86,12 @@ fn short_help(command: &Command, examples: &str, options: &[&str]) -> Option<Str
         let _ = writeln!(text, "{run}");
     }
     let all: Vec<&Arg> = command.get_arguments().collect();
-    let known = |option: &&str| {
+    let known = |option: &str| {
         all.iter()
             .copied()
             .find(|arg| arg.get_long() == Some(option))
     };
-    let known: Vec<&Arg> = options.iter().map(known).collect::<Option<_>>()?;
+    let known: Vec<&Arg> = options.split(' ').map(known).collect::<Option<_>>()?;
     let forms: Vec<String> = known.iter().map(|arg| form(arg)).collect();
     let width = forms.iter().map(String::len).max()?;
     text.push('\n');

@@ -16,6 +16,7 @@ use crate::integrate::{AnyField, AnyStep, Control};
 use crate::number::{Uncertain, eigenvalues};
 use crate::orbit::{Regular, ShootingNodes, Tracer, method_for};
 use nalgebra::Complex;
+use std::f64::consts::TAU;
 use std::ops::ControlFlow::Continue;
 
 /// Orbits that are looked at: the last one, and others before it, from each of which to the next what is left of the way falls by so much.
@@ -24,9 +25,9 @@ const APART: f64 = 1.3;
 /// The way to the limit is at most this part of the branch's; between two turns it is known to be there.
 const NEAR: f64 = 1e-2;
 const NEAR_TURNS: f64 = 0.06;
-/// Beside a saddle-focus the parameter turns each time that the period has grown by half a turn, of an orbit that passes it twice in a period by a whole one:
-/// after this many radians without it does not.
-const ONCE_AROUND: f64 = 3.0 * std::f64::consts::PI;
+/// Beside a saddle-focus the parameter turns each time that the period has grown by half a rotation about it, or by a whole one where the orbit passes
+/// the saddle twice in a period. After one and a half rotations without a turn it goes straight on.
+const ROTATIONS: f64 = 1.5;
 /// Two pairs of orbits agree on the limit to this part of the way that the first pair sees before it.
 const AGREE: f64 = 0.2;
 /// An equilibrium that an orbit passes is nearer than this to where it is slowest, in parts of the extent of the orbit.
@@ -137,7 +138,7 @@ impl Periods {
             limit.uncertainty <= part * way.fold(0.0, f64::max)
         };
         let near = |limit: Uncertain| within(limit, NEAR);
-        let focus = saddle().and_then(Saddle::turns);
+        let focus = saddle().and_then(Saddle::frequency);
         if let Some(at) = self
             .between_turns(off)
             .filter(|limit| within(*limit, NEAR_TURNS))
@@ -149,7 +150,7 @@ impl Periods {
             });
         }
         // It may turn once more.
-        if focus.is_some_and(|turns| self.time_since_turn() < ONCE_AROUND / turns) {
+        if focus.is_some_and(|frequency| self.time_since_turn() < ROTATIONS * TAU / frequency) {
             return None;
         }
         let by_rate = |rate: f64| {
@@ -271,15 +272,15 @@ impl Saddle {
         [least, other, 0.5 * least, 0.5 * other]
     }
 
-    /// The radians in a unit of time at which the orbit turns where on either side of the axis the eigenvalues that are nearest to it are complex.
-    fn turns(&self) -> Option<f64> {
+    /// The angular frequency of a saddle-focus: of the complex pair that is the nearest to the axis on its side; of two the lower one.
+    fn frequency(&self) -> Option<f64> {
         let nearest = |side: f64| {
             let own = self.0.iter().filter(|z| z.re * side > 0.0);
             own.min_by(|a, b| a.re.abs().total_cmp(&b.re.abs()))
         };
         let both = [1.0, -1.0].into_iter().filter_map(nearest);
-        let turns = both.map(|z| z.im.abs()).filter(|&turns| turns > 0.0);
-        turns.reduce(f64::min)
+        let frequencies = both.map(|z| z.im.abs()).filter(|&one| one > 0.0);
+        frequencies.reduce(f64::min)
     }
 }
 
