@@ -135,6 +135,22 @@ fn a_branch_ends_at_the_period_of_a_stiff_orbit() {
     assert!(off < 1e-10 * known, "{off}");
 }
 
+/// Taylor's method makes some of a branch's orbits and Radau's others: an arc of the one is not lost because the other took few steps for it.
+#[test]
+fn the_steps_of_one_method_do_not_bound_those_of_another() {
+    let found = points(
+        "branch orbits --system van-der-pol --along mu --from 0.5 --to 1e5",
+        &["mu", "period"],
+    );
+    assert_eq!(labels(&found), ["EP", "EP"], "{found:?}");
+    assert_eq!(found[1].1[0][0], 1e5, "{found:?}");
+    // Dorodnicyn's expansion (1947), to terms of 1 / mu.
+    let mu = 1e5_f64;
+    let known = (3.0 - 2.0 * 2.0_f64.ln()) * mu + 7.014_322_231 / mu.cbrt()
+        - (2.0 / 3.0 * mu.ln() + 1.3246) / mu;
+    assert!((found[1].1[1][0] - known).abs() < 1e-6, "{found:?}");
+}
+
 /// From a start far off any orbit a trial of Newton's method has an arc of millions of steps.
 #[test]
 fn a_search_for_a_stiff_orbit_ends() {

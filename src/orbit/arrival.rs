@@ -16,14 +16,14 @@ struct Target<'a> {
     normal: Vector,
     extents: &'a Vector,
     period: f64,
-    /// The steps of the arc before.
-    steps: usize,
+    /// The steps that the arc took before by the same method.
+    steps: Option<usize>,
 }
 
 /// An arc comes to a plane within so many times what it took before; and as near to the node, in parts of the extents.
 const LATE: f64 = 8.0;
 const NEAR: f64 = 0.3;
-/// A flow that takes so many times the steps of the arc before, and so many more, has left the orbit for good.
+/// A flow that takes so many times the steps that the arc took before, or else until it was expected, and so many more, has left the orbit for good.
 const MORE: (usize, usize) = (10, 1000);
 
 /// What becomes of the flow from a node.
@@ -54,7 +54,7 @@ impl Target<'_> {
         start: &Vector,
         expected: f64,
     ) -> Result<Arrival> {
-        let (mut lost, mut steps) = (false, 0);
+        let (mut lost, mut steps, mut expected_steps) = (false, 0, 0);
         let mut found: Option<f64> = None;
         let off = |time: f64| (time / expected).ln().abs();
         let mut observer = |step: &AnyStep<'_>| {
@@ -64,7 +64,10 @@ impl Target<'_> {
                 return Ok(Control::Stop);
             }
             steps += 1;
-            lost = steps > MORE.0 * self.steps + MORE.1;
+            if step.t0.abs() < expected.abs() {
+                expected_steps = steps;
+            }
+            lost = steps > MORE.0 * self.steps.unwrap_or(expected_steps) + MORE.1;
             if lost {
                 return Ok(Control::Stop);
             }
@@ -129,7 +132,7 @@ impl ShootingNodes {
         tracer: &mut Tracer,
         field: &AnyField<'_>,
         normals: impl Fn(usize) -> Vector,
-        steps: impl Fn(usize) -> usize,
+        steps: impl Fn(usize) -> Option<usize>,
         uncertain: impl Fn(usize) -> bool,
     ) -> Result<Option<Self>> {
         let (extents, period) = (extents(self.nodes.iter()), self.period().abs());

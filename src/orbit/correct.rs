@@ -435,7 +435,8 @@ impl<'a> Corrector<'a> {
         if let Some(planes) = planes {
             let field = self.family.field(site.at);
             let normals = |k| planes.normal(k);
-            let steps = |k: usize| planes.arcs[k].steps;
+            let method = self.tracer.name();
+            let steps = |k| planes.steps(k, method);
             let uncertain = |k: usize| ways.get(k).is_none_or(|&way| way > ARRIVED);
             let tracer = &mut self.tracer;
             let shooting = site.shooting.clone();

@@ -23,6 +23,8 @@ pub(super) struct Linear {
     pub arcs: Shared<Vec<Arc>>,
     /// The parameters, of the two that span the plane, in which the arcs have derivatives.
     free: Vec<usize>,
+    /// The method that has made the arcs.
+    method: &'static str,
     /// What the arcs say of volumes.
     pub logs: Vec<ArcLogs>,
     /// At every node orthonormal columns, the first the plane's normal, the others the axes of coordinates in it.
@@ -101,8 +103,8 @@ impl Linear {
         shooting: &ShootingNodes,
     ) -> Self {
         let frames = Shared::new(frames_of(family, field, shooting));
-        let arcs = (Shared::clone(&self.arcs), &self.free[..]);
-        Self::assembled(field, shooting, arcs, frames)
+        let made = (Shared::clone(&self.arcs), &self.free[..], self.method);
+        Self::assembled(field, shooting, made, frames)
     }
 
     /// A displacement of these nodes in other planes as one in these: moved along the flow, which changes no orbit. Their durations stay as they
@@ -131,18 +133,19 @@ impl Linear {
         frames: Shared<Vec<Matrix>>,
     ) -> Result<Self> {
         let places: Vec<usize> = free.of_plane.iter().map(|&i| free.plane[i]).collect();
+        let method = tracer.name();
         let mut arcs = tracer.arcs(field, &places)?;
         let along = shooting.nodes.iter().zip(&shooting.durations);
         let all = along.map(|(x, &duration)| arcs.arc(x, duration));
         let all = all.collect::<Result<Vec<_>>>()?;
-        let arcs = (Shared::new(all), free.of_plane);
-        Ok(Self::assembled(field, shooting, arcs, frames))
+        let made = (Shared::new(all), free.of_plane, method);
+        Ok(Self::assembled(field, shooting, made, frames))
     }
 
     fn assembled(
         field: &AnyField<'_>,
         shooting: &ShootingNodes,
-        (arcs, free): (Shared<Vec<Arc>>, &[usize]),
+        (arcs, free, method): (Shared<Vec<Arc>>, &[usize], &'static str),
         frames: Shared<Vec<Matrix>>,
     ) -> Self {
         let count = arcs.len();
@@ -175,6 +178,7 @@ impl Linear {
         Linear {
             arcs,
             free: free.to_vec(),
+            method,
             logs,
             frames,
             maps,
@@ -189,6 +193,7 @@ impl Linear {
         Linear {
             arcs: Shared::clone(&self.arcs),
             free: self.free.clone(),
+            method: self.method,
             logs: self.logs.clone(),
             frames: Shared::clone(&self.frames),
             maps: self.maps.clone(),
@@ -211,6 +216,11 @@ impl Linear {
             inflow.component_div(&extents).amax() * (change / slowness).abs()
         };
         arcs.map(way).collect()
+    }
+
+    /// The steps of the k-th arc, if they are those of this method.
+    pub fn steps(&self, k: usize, method: &str) -> Option<usize> {
+        (self.method == method).then(|| self.arcs[k].steps)
     }
 
     /// The normal of the plane at the k-th node, along the flow.

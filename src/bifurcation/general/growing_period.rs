@@ -47,6 +47,16 @@ impl Folds {
         self.0.push([at, period]);
     }
 
+    /// Whether the branch goes to and fro ever less, as it does about a limit.
+    pub fn close_in(&self) -> bool {
+        /// The way from one fold to the next, in parts of the way before.
+        const LESS: f64 = 0.5;
+        let Some([a, b, c]) = self.0.last_chunk() else {
+            return false;
+        };
+        (c[0] - b[0]).abs() < LESS * (b[0] - a[0]).abs()
+    }
+
     /// The two coordinates between which the branch goes to and fro without end, its period longer by the same time after every turn: as it does beside
     /// orbits that are homoclinic to another periodic orbit (Gavrilov & Shilnikov 1972, Math. USSR Sbornik 17, 467), whose tangencies the folds tend to.
     pub fn winding(&self) -> Option<[f64; 2]> {

@@ -24,6 +24,10 @@ const STEPS: usize = 5000;
 /// How many of the last orbits of a branch may say nothing of its limit.
 const LEFT_OUT: usize = 4;
 
+/// Points of two kinds on one turn of a branch coincide where the parameter is the same to this part of itself, some orders above rounding: so which
+/// points are listed doesn't depend on that.
+const COINCIDE: f64 = 1e-12;
+
 /// One branch.
 pub(super) struct OrbitBranch<'s, 'b, 'a> {
     set: &'s mut OrbitBranches<'b, 'a>,
@@ -41,6 +45,9 @@ pub(super) struct OrbitBranch<'s, 'b, 'a> {
     /// What seems to be a fold there, as the parameter turns, but could not be found as one.
     unsure: Option<(GeneralPoint, Regular)>,
     outside: Outside,
+    /// The last special point of its orbits, and whether those of further turns are listed.
+    last: Option<(Label, f64)>,
+    are_listed: bool,
     /// While the parameter does not vary.
     vertical: Option<Vertical>,
 }
@@ -64,6 +71,8 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
             turned: false,
             unsure: None,
             outside: Outside::default(),
+            last: None,
+            are_listed: true,
             vertical: Some(Vertical::default()),
         }
     }
@@ -142,7 +151,11 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
             left_out += 1;
         };
         let point = self.set.row(self.number, last, None);
-        let why = "the period grows without bound".to_owned();
+        let unlisted = match self.are_listed {
+            true => "",
+            false => "; folds and period doublings of its last turns coincide, and are not listed",
+        };
+        let why = format!("the period grows without bound{unlisted}");
         Some(self.longest(point, limit, why))
     }
 
@@ -302,6 +315,18 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         found.is_some()
     }
 
+    /// Whether this special point and the one before are of another kind at one parameter, on a branch that goes to and fro about a limit that is known:
+    /// there each turn has both, ever nearer to each other.
+    fn turns_coincide(&mut self, now: (Label, f64), near: &Regular) -> bool {
+        let before = self.last.replace(now);
+        let coincides = |(label, at): (Label, f64)| {
+            label != now.0 && (at - now.1).abs() <= COINCIDE * at.abs().max(now.1.abs())
+        };
+        before.is_some_and(coincides)
+            && self.folds.close_in()
+            && self.homoclinic_end(near).is_some()
+    }
+
     /// A pitchfork, where the branch's own condition has no simple zero: in the states in which two equal parts move alike, where
     /// there are such.
     fn pitchfork(&self, near: &Regular) -> GeneralPoint {
@@ -379,6 +404,10 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
             }
             _ => return Continue(()),
         };
+        let is_of_turn = [Label::Sn, Label::Pd, Label::Pf].contains(&label);
+        if is_of_turn && !self.are_listed {
+            return Continue(());
+        }
         let ends = label == Label::Ep && self.inside;
         // Another branch has come this way from its other end.
         if label == Label::Ep && self.set.is_known(&near.site) && !ends {
@@ -401,6 +430,9 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
                 self.unsure = Some((point, near.clone()));
                 return Continue(());
             }
+        }
+        if is_of_turn {
+            self.are_listed = !self.turns_coincide((label, point.parameters[FREE].value), near);
         }
         let form = match label {
             Label::Pd => Some(Form::Doubling),
