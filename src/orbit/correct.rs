@@ -97,8 +97,9 @@ impl Goal {
     };
 }
 
-/// Corrections below this that have ceased to shrink are the flow's own noise.
+/// Corrections below this that have ceased to shrink are the flow's own noise; a first one below the second leaves nothing else.
 const NOISE: f64 = 1e-8;
+const NEXT_TO_NOTHING: f64 = 1e-12;
 /// Indicators that are farther from zero than this ask for them too.
 const NEAR: f64 = 1.0;
 /// What a relative change of an arc's duration counts, where steps are chosen: the shortest arcs change by most.
@@ -108,6 +109,9 @@ const ARRIVED: f64 = 1e-4;
 /// Corrections larger than this are made with coarse flows, of orbits that are larger than this.
 const FAR: f64 = 1e-4;
 const LARGE: f64 = 0.1;
+/// Newton's method gets nowhere where a correction is larger than the first of these and, from this iteration on, than the second of them times the
+/// one two iterations before.
+const STUCK: (f64, f64, usize) = (1e-2, 0.5, 4);
 /// A correction that shrinks by less than this asks for new gradients.
 const SLOW: f64 = 0.02;
 
@@ -308,7 +312,9 @@ impl<'a> Corrector<'a> {
         let again = coarse.then(|| guess.clone());
         let from = (planes, guess);
         let mut found = self.newton(from, free, conditions, (goal, coarse), &mut reached);
-        if let (None, Some(again)) = (&found, again) {
+        // What was as large as this at last has not failed by how coarse the flows are.
+        let by_flows = reached.0 == 0 || reached.1 < STUCK.0;
+        if let (None, Some(again), true) = (&found, again, by_flows) {
             let from = (planes, again);
             found = self.newton(from, free, conditions, (goal, false), &mut reached);
             // Where the fine flows have found what the coarse ones did not they are used from now on.
@@ -334,7 +340,7 @@ impl<'a> Corrector<'a> {
         let mut site = guess;
         let mut gradients: Option<Vec<TangentVector>> = None;
         let mut ways = Vec::new();
-        let (mut first, mut last) = (f64::INFINITY, f64::INFINITY);
+        let (mut first, mut before, mut last) = (f64::INFINITY, f64::INFINITY, f64::INFINITY);
         let tested = conditions.iter().any(|one| test_function(one).is_some());
         // What the next correction will be.
         let mut expected = f64::INFINITY;
@@ -376,10 +382,15 @@ impl<'a> Corrector<'a> {
                 first = size.max(STRETCH * stretch);
             }
             let size = size.max(stretch);
+            if iterations >= STUCK.2 && size > STUCK.0.max(STUCK.1 * before) {
+                return None;
+            }
             // What a step of quadratic convergence leaves, by how the last one went.
             let left = size * (size / last).powi(2);
             let left_is_small = iterations == 1 || size < NOISE || left < goal.done.powi(2);
-            let small = (size < goal.done && left_is_small) || (size < NOISE && size > 0.3 * last);
+            let small = (size < goal.done && left_is_small)
+                || (size < NOISE && size > 0.3 * last)
+                || (iterations == 1 && size < NEXT_TO_NOTHING);
             let done = small && !coarse;
             expected = if iterations == 1 { size.powi(2) } else { left };
             ways = linear.ways(&site.shooting, &correction.durations);
@@ -418,7 +429,7 @@ impl<'a> Corrector<'a> {
                 all.map(|i| i.of(&spectrum).abs()).fold(0.0, f64::max) < NEAR
             });
             gradients = (near && size < SLOW * last).then_some(known);
-            last = size;
+            (before, last) = (last, size);
         }
         None
     }
