@@ -34,7 +34,7 @@
 // Printing may fail, as nobody may read it: these macros would panic.
 #![warn(clippy::print_stderr, clippy::print_stdout)]
 
-// Bottom up: a room imports only from those above it here. The drawing in the README says from which.
+// Bottom up: a room imports only from those above it here. The drawing in CONTRIBUTING.md says from which.
 pub use twinslip_error as error;
 pub use twinslip_model::{expression, field, friction, model, number, series};
 
@@ -84,8 +84,8 @@ pub mod internals {
 pub use error::{Error, Result};
 
 #[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct Readme;
+#[doc = include_str!("../docs/library.md")]
+struct Library;
 
 #[cfg(doctest)]
 #[doc = include_str!("../docs/own-system.md")]

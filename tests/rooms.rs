@@ -1,11 +1,11 @@
-//! The drawing of the rooms in the README is true: imports point one way only.
+//! The drawing of the rooms in CONTRIBUTING.md is true: imports point one way only.
 
 use crate::common::ROOT;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Each room and the rooms that it imports, as the README draws them; `error` is open to all.
+/// Each room and the rooms that it imports, as CONTRIBUTING.md draws them; `error` is open to all.
 const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("error", &[]),
     ("number", &[]),
@@ -285,11 +285,11 @@ fn imports_point_one_way() {
 }
 
 #[test]
-fn the_readme_draws_these_rooms() {
+fn the_drawing_has_these_rooms() {
     let root = Path::new(ROOT);
-    let readme = fs::read_to_string(root.join("README.md")).expect("readable");
+    let page = fs::read_to_string(root.join("CONTRIBUTING.md")).expect("readable");
     for (room, rooms) in MAY_IMPORT {
-        let row = readme
+        let row = page
             .lines()
             .find(|line| line.split_whitespace().next() == Some(room) && line.ends_with(']'));
         let row = row.unwrap_or_else(|| panic!("{room} is not drawn"));
