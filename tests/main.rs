@@ -53,6 +53,7 @@ mod fit_recorded;
 mod fit_records;
 mod fit_steps;
 mod friction;
+mod golden;
 mod growing_periods;
 mod guide;
 mod invariant_planes;
