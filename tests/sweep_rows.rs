@@ -127,6 +127,39 @@ fn vector_instructions_change_no_verdict() {
     );
 }
 
+/// The multiplier of a point that the last step of Newton's method was much nearer to than it is itself to the orbit: that it hardly changed on this step says
+/// little of the way that is left.
+#[test]
+fn exponents_of_cycles_are_within_their_bounds() {
+    let orbit = object("orbit --interfaces 1 --driving 1 --stiffness 0.3");
+    let orbit = &orbit["result"]["orbit"];
+    let at = |path: &str| {
+        orbit
+            .pointer(path)
+            .and_then(|x| x.as_f64())
+            .expect("a number")
+    };
+    let known = at("/log_multipliers/0/ln_abs/value") / at("/period/value");
+    for vectors in ["avx2", "none"] {
+        let ended = command::program()
+            .args(
+                "sweep --interfaces 1 --driving 1:2:2 --stiffness 0.3:0.31:2 --format json -q"
+                    .split(' '),
+            )
+            .env("TWINSLIP_VECTORS", vectors)
+            .output()
+            .expect("the program starts");
+        let made: serde_json::Value = serde_json::from_slice(&ended.stdout).expect("JSON");
+        let exponent = &made["result"]["rows"][0]["lyapunov_max"];
+        let [value, off] =
+            ["value", "uncertainty"].map(|part| exponent[part].as_f64().expect("a number"));
+        assert!(
+            (value - known).abs() <= off && off < 1e-7,
+            "{vectors}: {value} ± {off:e} for {known}"
+        );
+    }
+}
+
 #[test]
 fn wrong_grids_are_refused_in_one_sentence() {
     let plane = |driving: &str| format!("sweep --driving {driving} --stiffness 0.14");

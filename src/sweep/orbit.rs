@@ -15,6 +15,8 @@ pub(super) const TOLERANCE: f64 = 1e-11;
 const DERIVATIVE_PER_RTOL: f64 = 30.0;
 const ROUNDS: usize = 3;
 const CHANGE: f64 = 3.0;
+/// A step that is longer than this part of the one before comes no nearer.
+const NEARER: f64 = 0.1;
 
 /// What is known of an orbit.
 pub(super) struct Around {
@@ -43,7 +45,7 @@ pub(super) fn around(
     let (mut before, mut step) = (found.multiplier, found.last_step);
     let mut largest: Option<Uncertain> = None;
     let mut told: Option<(Vector, f64)> = None;
-    for _ in 0..ROUNDS {
+    for round in 0..ROUNDS {
         let mut points = vec![(DoubleDouble::ZERO, point.clone())];
         let mut steps = 0;
         let mut observer = |step: &AnyStep<'_>| {
@@ -76,17 +78,23 @@ pub(super) fn around(
         let Some(Revolution { mu, error, left }) = along.filter(|_| before > 0.0) else {
             break;
         };
-        // What mu still changes by, by how much it has changed over the last step to the point.
-        let part = (left.amax() / step).min(1.0);
-        let changes = CHANGE * (mu / before).ln().abs() * part;
-        let here = Uncertain::new(mu.ln(), changes + error);
-        // Of a stiff orbit the derivative may be too rough to come nearer by.
-        if largest.is_some_and(|best| best.uncertainty <= here.uncertainty) {
+        let part = left.amax() / step;
+        // What mu still changes by, by how much it has changed over the last step to the point. The step to the first point was made on a coarser map: by that
+        // alone it may be much shorter than what is left.
+        let changes = |part: f64| CHANGE * (mu / before).ln().abs() * part;
+        let here = Uncertain::new(mu.ln(), changes(part.min(1.0)) + error);
+        let is_no_better = match round {
+            0 => false,
+            // Where Newton's method comes no nearer what was left is noise, as of a stiff orbit, and the first point is as good.
+            1 => part > NEARER,
+            _ => largest.is_some_and(|best| best.uncertainty <= here.uncertainty),
+        };
+        if is_no_better {
             break;
         }
         largest = Some(here);
         told = Some((point.clone(), period));
-        if changes <= error {
+        if changes(part) <= error {
             break;
         }
         point = surface.nearest(&(point + &left));
