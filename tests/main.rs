@@ -54,6 +54,7 @@ mod fit_records;
 mod fit_steps;
 mod friction;
 mod growing_periods;
+#[cfg(unix)]
 mod guide;
 mod invariant_planes;
 mod ivp;
