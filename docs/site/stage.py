@@ -6,6 +6,7 @@ copied to `repository/benches/results/peers.md`, the link is changed in the copy
 
 from __future__ import annotations
 
+import html
 import os
 import re
 import shutil
@@ -15,7 +16,25 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
 LINK = re.compile(r"\]\(([^)\s]+)\)")
-NOT_FOR_READERS = shutil.ignore_patterns("build", "*.py", "__pycache__")
+NOT_FOR_READERS = shutil.ignore_patterns("build", "pictures", "*.py", "__pycache__")
+
+
+BLOCK = re.compile(r"^```(sh|console)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+
+def folded(match: re.Match[str]) -> str:
+    """A block of commands as HTML. A long command is folded between its words, with the continuation indented.
+
+    As plain text it would be folded behind any hyphen, and the highlighter would take `--set` for a keyword of the shell.
+    """
+    lines = []
+    for line in match[2].splitlines():
+        if match[1] == "sh" or line.startswith("$ "):
+            words = (f'<span class="word">{html.escape(word)}</span>' for word in line.split(" "))
+            lines.append(f'<span class="command">{" ".join(words)}\n</span>')
+        else:
+            lines.append(html.escape(line) + "\n")
+    return f'<pre><code class="nohighlight {match[1]}">{"".join(lines)}</code></pre>'
 
 
 class Stage:
@@ -35,7 +54,7 @@ class Stage:
             return f"]({os.path.relpath(to, target.parent)}{hash_}{anchor})"
 
         target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_text(LINK.sub(changed, source.read_text()))
+        target.write_text(BLOCK.sub(folded, LINK.sub(changed, source.read_text())))
 
     def copy(self, file: Path) -> Path:
         """Where a file of the repository is in the book; one outside docs/ is copied there."""
