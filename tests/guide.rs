@@ -100,14 +100,14 @@ fn written(line: &str) -> Vec<&str> {
         .collect()
 }
 
-/// Runs a line and says what is wrong with it; it must succeed, but for a status that the page names.
-fn succeeds(line: &str, place: &Path, status: i32) -> Result<Output, String> {
+/// Runs a line, which must end with one of these statuses, and says what is wrong with it.
+fn ends(line: &str, place: &Path, with: &[i32]) -> Result<Output, String> {
     if !line.starts_with("twinslip ") {
         return Err(format!("{line}: no command of twinslip"));
     }
     let ended = by_shell(line, place);
     let err = String::from_utf8_lossy(&ended.stderr);
-    if ended.status.code() != Some(status) {
+    if !ended.status.code().is_some_and(|code| with.contains(&code)) {
         return Err(format!("{line}: {:?}: {err}", ended.status.code()));
     }
     for file in written(line) {
@@ -195,7 +195,11 @@ fn tried(name: &str, text: &str) -> (usize, usize, String) {
                 std::fs::write(place.join(file), content).expect("a file");
                 continue;
             }
-            Piece::Run(line) => succeeds(&shortened(line), &place, 0).map(|_| ()),
+            // A map is done with undecided points too, and where these lie depends on the grid, which is shortened.
+            Piece::Run(line) if line.starts_with("twinslip sweep ") => {
+                ends(&shortened(line), &place, &[0, 3]).map(|_| ())
+            }
+            Piece::Run(line) => ends(&shortened(line), &place, &[0]).map(|_| ()),
             Piece::Shown(line, _) if line == "echo $?" => continue,
             Piece::Shown(line, shown) => {
                 let status = match pieces.get(i + 1) {
@@ -210,7 +214,7 @@ fn tried(name: &str, text: &str) -> (usize, usize, String) {
                     whole = format!("{command} --format table{piped}");
                 }
                 agreed += 1;
-                succeeds(&whole, &place, status).and_then(|Output { stdout, stderr, .. }| {
+                ends(&whole, &place, &[status]).and_then(|Output { stdout, stderr, .. }| {
                     let (out, err) = (
                         String::from_utf8_lossy(&stdout),
                         String::from_utf8_lossy(&stderr),
