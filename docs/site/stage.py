@@ -16,7 +16,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
 LINK = re.compile(r"\]\(([^)\s]+)\)")
-NOT_FOR_READERS = shutil.ignore_patterns("build", "pictures", "*.py", "__pycache__")
+NOT_FOR_READERS = shutil.ignore_patterns("build", "pictures", "write-*", "*.in", "*.py", "__pycache__")
 
 
 BLOCK = re.compile(r"^```(sh|console)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
