@@ -37,6 +37,17 @@ def folded(match: re.Match[str]) -> str:
     return f'<pre><code class="nohighlight {match[1]}">{"".join(lines)}</code></pre>'
 
 
+FENCED = re.compile(r"(^```.*?^```$)", re.MULTILINE | re.DOTALL)
+OPTION = re.compile(r"(?<!`)`(--[\w-]+)`(?!`)")
+
+
+def unbroken(text: str) -> str:
+    """The same text with the names of options marked, so that the end of a line does not part `--` from its word."""
+    parts = FENCED.split(text)
+    parts[::2] = [OPTION.sub(r'<code class="word">\1</code>', part) for part in parts[::2]]
+    return "".join(parts)
+
+
 class Stage:
     def __init__(self, place: Path) -> None:
         self.place = place
@@ -54,7 +65,8 @@ class Stage:
             return f"]({os.path.relpath(to, target.parent)}{hash_}{anchor})"
 
         target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_text(BLOCK.sub(folded, LINK.sub(changed, source.read_text())))
+        text = LINK.sub(changed, source.read_text())
+        target.write_text(BLOCK.sub(folded, unbroken(text)))
 
     def copy(self, file: Path) -> Path:
         """Where a file of the repository is in the book; one outside docs/ is copied there."""
