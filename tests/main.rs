@@ -55,6 +55,7 @@ mod fit_steps;
 mod friction;
 mod golden;
 mod growing_periods;
+#[cfg(unix)]
 mod guide;
 mod invariant_planes;
 mod ivp;
