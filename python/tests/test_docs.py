@@ -12,7 +12,8 @@ import pytest
 import twinslip
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-PAGES = ["README.md", "python/README.md", "docs/python.md"]
+TASKS = ["brute-force-diagram", "coming-from-scipy", "python-beside-scipy", "python-functions-as-systems"]
+PAGES = ["README.md", "python/README.md", "docs/python.md", *(f"docs/tasks/{task}.md" for task in TASKS)]
 
 
 @pytest.mark.parametrize("page", PAGES)
