@@ -12,8 +12,18 @@ import pytest
 import twinslip
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-TASKS = ["brute-force-diagram", "coming-from-scipy", "python-beside-scipy", "python-functions-as-systems"]
-PAGES = ["README.md", "python/README.md", "docs/python.md", *(f"docs/tasks/{task}.md" for task in TASKS)]
+TASKS = [
+    "brute-force-diagram",
+    "coming-from-scipy",
+    "python-beside-scipy",
+    "python-functions-as-systems",
+]
+PAGES = [
+    "README.md",
+    "python/README.md",
+    "docs/python.md",
+    *(f"docs/tasks/{task}.md" for task in TASKS),
+]
 
 
 @pytest.mark.parametrize("page", PAGES)
