@@ -732,7 +732,7 @@ class Commands:
             Starts at each point, a row for each: the first beside the symmetric steady state, the
             second with equal interfaces, the third far from it, the others at random (``seed``).
             Of a ``system`` the first is its start, the others lie at random around it, in each
-            state x within 1 + |x| [default: 1]
+            state x within 1 + abs(x) [default: 1]
         seed : int, optional
             Seed of the random starts: the same seed gives the same rows [default: 1]
         follow : bool, optional

@@ -290,6 +290,11 @@ class Result:
     def svg(self) -> str:
         """The picture as SVG.
 
+        Returns
+        -------
+        str
+            The text of the file; of several pictures the first.
+
         Raises
         ------
         ValueError
