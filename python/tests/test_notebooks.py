@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -54,3 +55,26 @@ def test_it_runs_and_prints_what_is_stored(name: str) -> None:
         env={**os.environ, "MPLBACKEND": "module://matplotlib_inline.backend_inline"},
     )
     assert ended.returncode == 0, ended.stderr[-4000:]
+
+
+def test_they_are_chapters_of_the_book(tmp_path: Path) -> None:
+    (tmp_path / "SUMMARY.md").write_text(
+        "# Summary\n\n- [Notebooks](notebooks.md)\n- [Files](files.md)\n"
+    )
+    (tmp_path / "notebooks.md").write_text("[First steps](../python/notebooks/first-steps.ipynb)\n")
+    script = PACKAGE / "scripts" / "render-notebooks"
+    subprocess.run([sys.executable, script, tmp_path], check=True, capture_output=True)
+    assert (tmp_path / "notebooks.md").read_text() == "[First steps](notebooks/first-steps.md)\n"
+    summary = (tmp_path / "SUMMARY.md").read_text()
+    for name in NOTEBOOKS:
+        assert f"](notebooks/{name}.md)\n" in summary.partition("(files.md)")[0]
+        page = (tmp_path / "notebooks" / f"{name}.md").read_text()
+        links = re.findall(r"\]\(([^)]+)\)", page)
+        assert any(link.endswith(".png") for link in links)
+        for link in links:
+            assert (tmp_path / "notebooks" / link).is_file(), f"{name}: {link}"
+        # An empty line would end the markup of a table or a picture.
+        for markup in re.findall(
+            r'^<div class="table-wrapper".*?^</div>', page, re.DOTALL | re.MULTILINE
+        ):
+            assert not re.search(r"\n\s*\n", markup)
