@@ -97,6 +97,7 @@ mod programs;
 mod programs_input;
 mod radau;
 mod ratios;
+mod reference;
 mod reproduce;
 mod resonances_of_systems;
 mod rooms;
