@@ -797,7 +797,7 @@ class Commands:
         each_step: bool = False,
         progress: Optional[bool] = None,
     ) -> Fit:
-        """Friction parameters from laboratory data: velocity steps fitted by least squares, with errors and 95 % intervals.
+        r"""Friction parameters from laboratory data: velocity steps fitted by least squares, with errors and 95 % intervals.
 
         Parameters
         ----------
@@ -838,7 +838,7 @@ class Commands:
             Column of the normal stress
         weights : str or int, optional
             Column by which the squares of residuals are multiplied
-        from_ : float, optional
+        from\_ : float, optional
             First time of the window in s, as in the record
         to : float, optional
             Last time of the window in s
