@@ -99,6 +99,7 @@ mod programs;
 mod programs_input;
 mod radau;
 mod ratios;
+mod reference;
 mod reproduce;
 mod resonances_of_systems;
 mod rooms;

@@ -34,22 +34,10 @@ Array = npt.NDArray[Any]
 
 
 class Result:
-    """What a command has computed.
+    """The result of a command.
 
-    Attributes
-    ----------
-    command : list of str
-        The command line that gives the same.
-    model : Record
-        The parameters.
-    units : Record
-        What quantities are measured in.
-    numerics : Record
-        Method and tolerances.
-    work : Record
-        What it cost: steps, evaluations.
-    messages : list of str
-        What is to be said of it.
+    Its columns are arrays, ``result["stress"]`` or ``result.stress``; all else that JSON has under
+    ``result`` is an attribute of that name.
     """
 
     #: Whether rows are yielded while it runs.
@@ -122,32 +110,32 @@ class Result:
 
     @property
     def command(self) -> list[str]:
-        """The command line that gives the same."""
+        """The words of the command line that gives the same numbers."""
         return ["twinslip", *self._words]
 
     @property
     def model(self) -> Record:
-        """The parameters."""
+        """The parameters of the model."""
         return self._part("model")
 
     @property
     def units(self) -> Record:
-        """What quantities are measured in; empty where there are no units."""
+        """The unit of each quantity; empty for a system whose formulas have no units."""
         return self._part("units")
 
     @property
     def numerics(self) -> Record:
-        """Method and tolerances."""
+        """The method and the tolerances."""
         return self._part("numerics")
 
     @property
     def work(self) -> Record:
-        """What it cost."""
+        """Steps, evaluations and time."""
         return self._part("work")
 
     @property
     def messages(self) -> list[str]:
-        """What is to be said of it."""
+        """The messages that the command line would print."""
         self._finish()
         return self._messages
 
@@ -163,7 +151,7 @@ class Result:
         return list(self._columns)
 
     def __len__(self) -> int:
-        """So many rows."""
+        """The number of rows."""
         self._finish()
         return next((len(values) for values, _ in self._columns.values()), 0)
 
@@ -289,6 +277,11 @@ class Result:
 
     def svg(self) -> str:
         """The picture as SVG.
+
+        Returns
+        -------
+        str
+            The text of the file; of several pictures the first.
 
         Raises
         ------

@@ -26,7 +26,13 @@ _RESULTS: dict[str, type[results.Result]] = {
 
 
 def scenes() -> list[str]:
-    """The names of the scenes that are built in, such as ``"fig12"``."""
+    """The scenes that are built in.
+
+    Returns
+    -------
+    list of str
+        Their names, such as ``"fig12"``, sorted.
+    """
     return _core.scenes()
 
 

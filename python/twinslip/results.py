@@ -118,7 +118,18 @@ class Equilibria(Result):
         return super().__getitem__(name)
 
     def to_dataframe(self, of: Optional[str] = None) -> pandas.DataFrame:
-        """One row for each equilibrium, or for each of another list."""
+        """The equilibria, or a list that the result has, as a table of pandas.
+
+        Parameters
+        ----------
+        of : str, optional
+            The list: its name in JSON. The equilibria are taken unless it is given.
+
+        Returns
+        -------
+        pandas.DataFrame
+            One row for each equilibrium, or for each entry of the list.
+        """
         if of is not None:
             return self._listed(of)
         import pandas
@@ -143,7 +154,7 @@ class Orbit(Result):
     multipliers : ndarray of complex
         Its Floquet multipliers, the trivial one first.
     log_multipliers : list of Record
-        ln |mu| with its bound, and the angle, of all others.
+        ``ln_abs``, the logarithm of the absolute value with its bound, and the angle, of all others.
     verdict : str
         ``"stable"``, ``"unstable"`` or ``"undecided"``.
     others : list of Record
@@ -217,7 +228,13 @@ class Branch(Yielding):
 
 
 class Locus(Branch):
-    """Curves of bifurcations in two parameters, with their special points."""
+    """Curves of bifurcations in two parameters, with their special points.
+
+    Attributes
+    ----------
+    special : list of Record
+        The special points: ``label`` (TOP, CP, BT, R2, UZ, ...), where they are, with bounds.
+    """
 
 
 class Sweep(Yielding):

@@ -50,6 +50,11 @@ class System(Commands, Model):
         **parameters : float
             Other values of its parameters.
 
+        Returns
+        -------
+        System
+            The system. The file is read by its first command.
+
         Raises
         ------
         ValueError
@@ -86,6 +91,11 @@ class System(Commands, Model):
         name : str, optional
             What it is called; else as the function.
 
+        Returns
+        -------
+        System
+            The system, with the function's formulas as the text of a file.
+
         Raises
         ------
         ValueError
@@ -100,7 +110,23 @@ class System(Commands, Model):
         )
 
     def replace(self, **changes: Any) -> System:
-        """The same system with other arguments or parameters; None takes one away."""
+        """The same system with other arguments or parameters.
+
+        Parameters
+        ----------
+        **changes : float, str or None
+            Arguments of :class:`System` and parameters of the system by their names. None takes one away.
+
+        Returns
+        -------
+        System
+            A new system; this one stays as it is.
+
+        Raises
+        ------
+        ValueError
+            For a value of the wrong kind. Other values that are not allowed, and names that are no parameters, are errors of the first command.
+        """
         known = _words.model_options()
         given = {**self._given, **self._parameters, **changes}
         named = {name: value for name, value in given.items() if name in known}

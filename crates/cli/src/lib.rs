@@ -21,6 +21,7 @@ mod orbit;
 mod progress;
 #[cfg_attr(not(feature = "mpi"), path = "no_ranks.rs")]
 mod ranks;
+mod reference;
 mod report;
 mod reproduce;
 mod resume;
@@ -105,6 +106,9 @@ enum CliCommand {
     /// Manual pages, one for each command
     #[command(after_help = shell::MAN_EXAMPLE)]
     Man(shell::ManOptions),
+    /// The pages of the documentation on commands, columns and files, as Markdown
+    #[command(hide = true, after_help = reference::EXAMPLE)]
+    Reference(reference::ReferenceOptions),
 }
 
 /// The whole command line, with all that `--version` tells.
@@ -239,6 +243,7 @@ fn run_line(command: &CliCommand, call: &Call) -> Result<Ending, Error> {
         CliCommand::Figure(options) => reproduce::run_figure(options, call),
         CliCommand::Completions(options) => shell::completions(options),
         CliCommand::Man(options) => shell::man(options),
+        CliCommand::Reference(options) => reference::run(options),
     }
 }
 

@@ -84,7 +84,7 @@ pub use law::{LawCurve, LawLandmarks, LawPlan, LawPoint, Together};
 pub use locus::{CurveChoice, LocusPlan};
 pub use many::{
     Catalogue, CataloguePlan, Drawn, FoundManyEquilibrium, ManyCheckpoint, ManyEquilibriumPlan,
-    ManyInstant, ManyPlan, Participant, Saving, SteadyInterface, run_many,
+    ManyInstant, ManyPlan, Participant, Saving, SteadyInterface, many_run_columns, run_many,
 };
 pub use options::{
     EquilibriaOptions, IntegrateOptions, LawOptions, ModelOptions, NumericsOptions, OrbitOptions,
@@ -99,7 +99,7 @@ pub use section::{
     CheckedExponents, SectionOutcome, SectionPlan, SectionRow, explain_section, run_section,
     section_columns,
 };
-pub use shipped::{about, shipped, shipped_names};
+pub use shipped::{about, shipped, shipped_laws, shipped_names, shipped_systems};
 pub use sweep::{BasinStates, Moving, Shard, SweepLayout, SweepOptions, SweepPlan, Swept};
 pub use system::{Described, System};
 pub use text::{

@@ -32,6 +32,22 @@ pub(super) fn shipped_system_names() -> Vec<&'static str> {
     SCENES.get_dir("systems").map_or_else(Vec::new, names)
 }
 
+/// The systems that are built in, sorted: names and texts.
+pub fn shipped_systems() -> Vec<(&'static str, &'static str)> {
+    texts("systems")
+}
+
+/// The friction laws that are built in as files, sorted: names and texts.
+pub fn shipped_laws() -> Vec<(&'static str, &'static str)> {
+    texts("laws")
+}
+
+fn texts(folder: &'static str) -> Vec<(&'static str, &'static str)> {
+    let names = SCENES.get_dir(folder).map_or_else(Vec::new, names);
+    let text = |name: &'static str| Some((name, shipped_in(folder, Path::new(name))?));
+    names.into_iter().filter_map(text).collect()
+}
+
 /// The names of all scenes, sorted.
 pub fn shipped_names() -> Vec<&'static str> {
     names(&SCENES)
@@ -44,11 +60,12 @@ fn names(folder: &Dir<'static>) -> Vec<&'static str> {
     names
 }
 
-/// What a scene shows: the first sentence of the remark at its head.
+/// What a scene shows: the first sentence of the remark at its head, in the first paragraph.
 pub fn about(text: &str) -> String {
     let remark: Vec<&str> = text
         .lines()
         .map_while(|line| line.strip_prefix('#').map(str::trim))
+        .take_while(|line| !line.is_empty())
         .collect();
     let remark = remark.join(" ");
     let end = remark

@@ -11,6 +11,6 @@ mod setup;
 pub use catalogue::{Catalogue, CataloguePlan, Participant};
 pub use draw::Drawn;
 pub use equilibrium::{FoundManyEquilibrium, ManyEquilibriumPlan, SteadyInterface};
-pub use plan::{ManyInstant, ManyPlan};
+pub use plan::{ManyInstant, ManyPlan, many_run_columns};
 pub use run::run_many;
 pub use saved::{ManyCheckpoint, Saving};

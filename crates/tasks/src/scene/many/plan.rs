@@ -183,12 +183,12 @@ impl ManyPlan {
 
     /// The columns of the points of a picture.
     pub fn pictured(&self) -> Vec<Column<ManyInstant>> {
-        together()
+        many_run_columns()
     }
 
     /// Whether any column needs what all interfaces do.
     pub fn needs_extent(&self) -> bool {
-        let of_all = together();
+        let of_all = many_run_columns();
         let extents = &of_all[EXTENTS..];
         self.picture || self.columns.iter().any(|column| extents.contains(column))
     }
@@ -322,8 +322,8 @@ fn method(numerics: &NumericsOptions) -> Result<ManyMethod> {
 /// Columns before those of what all interfaces do.
 const EXTENTS: usize = 3;
 
-/// What all interfaces do together.
-fn together() -> Vec<Column<ManyInstant>> {
+/// The columns of what all interfaces do together.
+pub fn many_run_columns() -> Vec<Column<ManyInstant>> {
     use Quantity::{Length, Number, SlipRate, State, Stress, Time};
     type Row = ManyInstant;
     vec![
@@ -342,7 +342,7 @@ fn together() -> Vec<Column<ManyInstant>> {
 
 /// The columns that are asked for, and the interfaces that they are of.
 fn columns(names: Option<&str>, count: usize) -> Result<(Vec<Column<ManyInstant>>, Vec<usize>)> {
-    let of_all = together();
+    let of_all = many_run_columns();
     let Some(names) = names else {
         return Ok((of_all, Vec::new()));
     };
