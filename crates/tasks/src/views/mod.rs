@@ -12,6 +12,8 @@ mod equilibria;
 mod fit;
 mod general;
 mod heat_map;
+mod labels;
+mod last_part;
 mod law;
 mod listing;
 mod many;
@@ -26,13 +28,14 @@ mod text;
 pub use bifurcation::{branch_columns, locus_columns, special_columns};
 pub use catalogue::{many_event_columns, participation_columns, picture_of_events};
 pub use clusters::{cluster_columns, staircase};
-pub use diagram::{axis_label, branch_lines, branches, curves, named_strokes, parameters};
+pub use diagram::{axis_label, branch_lines, branches, curves, parameters};
 pub use equilibria::equilibria_columns;
 pub use fit::{
     FitRow, digits_of, fit_columns, in_digits, parameter_label, picture_of_fit,
     picture_of_parameters, scale_name,
 };
-pub use general::{general_branches, general_curves, general_lines, quantity_label};
+pub use general::{general_branches, general_curves, general_lines};
+pub use labels::named_strokes;
 pub use law::law_columns;
 pub use listing::{Listed, Listing};
 pub use many::many_run;
@@ -47,6 +50,7 @@ pub use sweep::{
 };
 pub use text::{
     text_equilibria_columns, text_law_columns, text_orbit_columns, text_return_map, text_run,
+    with_parameters,
 };
 
 /// The names as written, error budgets in columns of their own but in tables.
