@@ -15,6 +15,7 @@ mod heat_map;
 mod labels;
 mod last_part;
 mod law;
+mod law_picture;
 mod listing;
 mod many;
 mod many_equilibria;
@@ -37,6 +38,7 @@ pub use fit::{
 pub use general::{general_branches, general_curves, general_lines};
 pub use labels::named_strokes;
 pub use law::law_columns;
+pub use law_picture::picture_of_law;
 pub use listing::{Listed, Listing};
 pub use many::many_run;
 pub use many_equilibria::steady_interface_columns;
