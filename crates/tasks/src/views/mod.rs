@@ -23,6 +23,7 @@ mod map;
 mod orbit;
 mod points;
 mod run;
+mod steady_picture;
 pub mod sweep;
 mod text;
 
@@ -46,6 +47,9 @@ pub use map::{return_map, states_at_returns};
 pub use orbit::orbit_columns;
 pub use points::{REGIMES, outcome, sweep_columns, sweep_row};
 pub use run::{event_columns, panels_in_time, phase_plane, picture_of_run};
+pub use steady_picture::{
+    picture_of_equilibria, picture_of_many_equilibrium, picture_of_text_equilibria,
+};
 pub use sweep::{
     Basins, GridSide, PointOutcome, basin_map, basins_of_states, parameter_map, regime_line,
     regime_map,
