@@ -122,7 +122,7 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
         Note::new(7e-3, 0.33, "both"),
         Note::new(7.0, 0.428, "one slides"),
         Note::new(4.0, 0.27, "asymmetric"),
-        Note::new(7e5, 0.33, "both"),
+        Note::new(7e5, 0.33, "both slide"),
         Note::new(25.0, 0.06, "symmetric too"),
         Note::new(0.022, 0.4, "2 V_M"),
         Note::new(2000.0, 0.4, "2 V_m"),
