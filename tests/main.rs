@@ -43,6 +43,7 @@ mod eigenvalues;
 mod ensemble;
 mod ensemble_input;
 mod equilibria_generic;
+mod equilibria_pictures;
 mod estimates;
 mod events;
 mod figures_of_laws;

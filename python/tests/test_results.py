@@ -137,7 +137,7 @@ def test_copies_by_pickle_are_the_same(name: str) -> None:
     assert copy._repr_html_() == result._repr_html_()
 
 
-@pytest.mark.parametrize("name", [name for name in MADE if name != "equilibria"])
+@pytest.mark.parametrize("name", MADE)
 def test_notebooks_show_a_picture(name: str) -> None:
     result = MADE[name]()
     text = result._repr_html_()

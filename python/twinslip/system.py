@@ -223,7 +223,7 @@ def _varied(command: str, own: dict[str, Any]) -> list[str]:
 def _pictured(command: str, own: dict[str, Any]) -> list[str]:
     """What asks for a picture, where that costs nothing to speak of beside the computation."""
     picture = "--plot=picture.svg"
-    if command in ("integrate", "equilibria"):
+    if command == "integrate":
         return []
     if command == "fit":
         return [picture, "--plot-parameters=parameters.svg", "--plot-law=law.svg"]

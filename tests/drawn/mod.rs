@@ -1,6 +1,7 @@
 //! What a viewer of a picture sees: the words and shapes of its SVG with their places, in the font that is built in.
 
 pub mod looks;
+pub mod points;
 pub mod sweeps;
 mod words;
 

@@ -9,7 +9,7 @@ use ttf_parser::Face;
 static FONT: &[u8] = include_bytes!("../../assets/font/plot.ttf");
 
 /// What is read of words. Whatever else would be said of them could move their letters or change their size.
-const KNOWN: [&str; 8] = [
+const KNOWN: [&str; 9] = [
     "x",
     "y",
     "dy",
@@ -18,6 +18,8 @@ const KNOWN: [&str; 8] = [
     "font-size",
     "fill",
     "transform",
+    // Keeps the spaces beside subscripts, which our measure has anyway.
+    "space",
 ];
 
 /// Words on one line.

@@ -30,11 +30,15 @@ pub fn run(options: &EquilibriaOptions, call: &Call) -> Result<Ending> {
 /// Of built-in laws.
 fn plan(options: &EquilibriaOptions, call: &Call) -> Result<Ending> {
     let plan = EquilibriaPlan::new(options)?;
-    let report = Report::new(&options.output, call, &[])?;
-    if options.output.explain {
-        call.say(plan.explain());
-    }
+    let outputs = (&options.output, options.plot.as_deref());
+    let report = report::begun(outputs, call, || plan.explain())?;
     let found = plan.solve()?;
+    if let Some(path) = &options.plot {
+        match views::picture_of_equilibria(&plan, &found.equilibria) {
+            Some(drawing) => report.draw(path, &drawing)?,
+            None => report.say("there is no steady state to draw"),
+        }
+    }
     let ending = write(&report, &plan, &found)?;
     Ok(match (ending, found.undecided()) {
         (Ending::Done, _) if !found.complete => report.undecided(

@@ -8,10 +8,9 @@ use serde_json::{Map, Value, json};
 use twinslip::error::{Error, Result};
 use twinslip::friction::ExtremumKind;
 use twinslip::number::Uncertain;
-use twinslip_output::{Format, plot};
+use twinslip_output::Format;
 use twinslip_tasks::scene::{
-    Column, Described, LawCurve, LawOptions, LawPlan, LawPoint, Quantity, TextModel, Together,
-    Units,
+    Column, Described, LawCurve, LawOptions, LawPlan, Quantity, TextModel, Together, Units,
 };
 use twinslip_tasks::views;
 
@@ -21,10 +20,11 @@ pub fn run(options: &LawOptions, call: &Call) -> Result<Ending> {
         _ => {}
     }
     let plan = LawPlan::new(options)?;
-    let report = begun(options, call, || plan.explain())?;
+    let outputs = (&options.output, options.plot.as_deref());
+    let report = report::begun(outputs, call, || plan.explain())?;
     let curves = plan.curves()?;
     if let Some(path) = &options.plot {
-        report.draw(path, &picture(&plan.system.units, &curves))?;
+        report.draw(path, &views::picture_of_law(&plan.system.units, &curves))?;
     }
     let columns = views::law_columns(curves.len() > 1);
     write(
@@ -34,23 +34,6 @@ pub fn run(options: &LawOptions, call: &Call) -> Result<Ending> {
         (&curves, plan.together),
         None,
     )
-}
-
-/// Checks where results and pictures go, and says what will be computed.
-pub fn begun<'a>(
-    options: &LawOptions,
-    call: &'a Call,
-    explain: impl FnOnce() -> String,
-) -> Result<Report<'a>> {
-    if let Some(path) = &options.plot {
-        plot::PictureFormat::of(path)?;
-    }
-    let plots: Vec<&std::path::Path> = options.plot.as_deref().into_iter().collect();
-    let report = Report::new(&options.output, call, &plots)?;
-    if options.output.explain {
-        call.say(explain());
-    }
-    Ok(report)
 }
 
 /// What laws are known by, in the user's units; of two interfaces each with its number.
@@ -235,98 +218,4 @@ pub fn write<R>(
     let ending = report.write_all(units, remarks, columns, points())?;
     found.iter().for_each(|line| report.say(line));
     Ok(ending)
-}
-
-/// tau_ss, as a coefficient of friction where that is the same of all laws and known, and k_c against V.
-pub fn picture(units: &Units, curves: &[LawCurve]) -> plot::Drawing {
-    let first = curves.first().and_then(|curve| curve.coefficient);
-    let alike = curves.iter().all(|curve| curve.coefficient == first);
-    let coefficient = first.filter(|_| alike);
-    let unit = |quantity| units.short_name(quantity);
-    // A coefficient has no unit.
-    let stress = |x: f64| match coefficient {
-        Some(coefficient) => coefficient * x,
-        None => units.outward(Quantity::Stress, x),
-    };
-    let friction = match (coefficient, unit(Quantity::Stress).as_str()) {
-        (Some(_), _) => "friction coefficient τₛₛ/σ".to_owned(),
-        (None, "1") => "steady stress τₛₛ".to_owned(),
-        (None, unit) => format!("steady stress τₛₛ [{unit}]"),
-    };
-    let x = plot::Axis::log(format!("slip rate V [{}]", unit(Quantity::SlipRate)));
-    let lines = |y: &dyn Fn(&LawPoint) -> f64| -> Vec<plot::PlotSeries> {
-        let line = |(i, curve): (usize, &LawCurve)| {
-            let rate = |at: &LawPoint| units.outward(Quantity::SlipRate, at.slip_rate);
-            let rates = curve.points.iter().map(rate).collect();
-            let name = match curves.len() {
-                1 => String::new(),
-                _ => format!("interface {}", curve.interface),
-            };
-            let values = curve.points.iter().map(y).collect();
-            plot::PlotSeries::new(name, rates, values).colour(i)
-        };
-        curves.iter().enumerate().map(line).collect()
-    };
-    // Of two laws each mark has the colour and the number of its interface.
-    let mark = |i: usize, (x, y): (f64, f64), [alone, beside]: [&str; 2]| match curves.len() {
-        1 => plot::Mark::new(x, y, alone),
-        _ => {
-            let label = format!("{beside} ({})", curves[i].interface);
-            plot::Mark::new(x, y, label).colour(i)
-        }
-    };
-    let numbered = || curves.iter().enumerate();
-    let extrema = numbered().flat_map(|(i, curve)| {
-        let extrema = curve.landmarks.extrema.iter();
-        extrema.map(move |extremum| (i, extremum))
-    });
-    let marks = extrema.map(|(i, extremum)| {
-        let (names, side) = match extremum.kind {
-            ExtremumKind::Maximum => (["maximum V_M", "V_M"], plot::Side::Above),
-            ExtremumKind::Minimum => (["minimum V_m", "V_m"], plot::Side::Below),
-        };
-        let at = units.outward(Quantity::SlipRate, extremum.slip_rate.value);
-        mark(i, (at, stress(extremum.stress.value)), names).side(side)
-    });
-    let friction = plot::Panel {
-        series: lines(&|at| stress(at.stress)),
-        marks: marks.collect(),
-        ..plot::Panel::new(
-            "steady-state friction",
-            x.clone(),
-            plot::Axis::linear(friction),
-        )
-    };
-    let tops = numbered().filter_map(|(i, curve)| {
-        let maximum = curve.landmarks.critical_stiffness_maximum?;
-        let at = units.outward(Quantity::SlipRate, maximum.slip_rate.value);
-        let stiffness = units.outward(Quantity::Stiffness, maximum.stiffness.value);
-        let mark = mark(i, (at, stiffness), ["maximum", "maximum"]);
-        Some(mark.side(plot::Side::Above))
-    });
-    let title = "critical stiffness: a stiffer single interface slides steadily";
-    let critical = format!("critical stiffness k_c [{}]", unit(Quantity::Stiffness));
-    let stiffness = plot::Panel {
-        series: from_above(lines(&|at| {
-            units.outward(Quantity::Stiffness, at.critical_stiffness)
-        })),
-        marks: tops.collect(),
-        zero_line: true,
-        ..plot::Panel::new(title, x, plot::Axis::linear(critical))
-    };
-    plot::Drawing::columns(vec![vec![friction, stiffness]])
-}
-
-/// Without their far negative parts: where a law strengthens, k_c falls without bound and only says that all is stable.
-fn from_above(mut curves: Vec<plot::PlotSeries>) -> Vec<plot::PlotSeries> {
-    let top = curves.iter().flat_map(|curve| curve.y.iter().copied());
-    let top = top.fold(0.0, f64::max);
-    if top > 0.0 {
-        for k in curves.iter_mut().flat_map(|curve| &mut curve.y) {
-            if *k < -top {
-                *k = f64::NAN;
-            }
-        }
-    }
-    curves
 }

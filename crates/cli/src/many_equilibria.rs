@@ -13,11 +13,12 @@ use twinslip_tasks::views;
 
 pub fn run(options: &EquilibriaOptions, call: &Call) -> Result<Ending> {
     let plan = ManyEquilibriumPlan::new(options)?;
-    let report = Report::new(&options.output, call, &[])?;
-    if options.output.explain {
-        call.say(plan.explain());
-    }
+    let outputs = (&options.output, options.plot.as_deref());
+    let report = report::begun(outputs, call, || plan.explain())?;
     let found = plan.solve()?;
+    if let Some(path) = &options.plot {
+        report.draw(path, &views::picture_of_many_equilibrium(&plan, &found))?;
+    }
     let ending = write(&report, &plan, &found)?;
     Ok(match ending {
         Ending::Done if found.undecided() => report.undecided(

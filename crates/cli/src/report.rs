@@ -31,6 +31,23 @@ pub struct Report<'a> {
     pub call: &'a Call,
 }
 
+/// Checks where results and a picture go, and says what will be computed.
+pub fn begun<'a>(
+    (options, plot): (&OutputOptions, Option<&Path>),
+    call: &'a Call,
+    explain: impl FnOnce() -> String,
+) -> Result<Report<'a>> {
+    if let Some(path) = plot {
+        plot::PictureFormat::of(path)?;
+    }
+    let plots: Vec<&Path> = plot.into_iter().collect();
+    let report = Report::new(options, call, &plots)?;
+    if options.explain {
+        call.say(explain());
+    }
+    Ok(report)
+}
+
 impl<'a> Report<'a> {
     /// Chooses the format and makes sure that all files can be written, before anything is computed.
     pub fn new(options: &OutputOptions, call: &'a Call, others: &[&Path]) -> Result<Self> {

@@ -4,6 +4,7 @@ use super::added::{Added, put_band};
 use super::bands::{Band, Banded};
 use super::item::{Item, Measured};
 use super::member::Yield;
+use super::picture::PointAt;
 use super::{percent, told};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -52,6 +53,22 @@ pub fn items(found: &Yield) -> Vec<Item> {
         }
     };
     found.rows.iter().map(item).collect()
+}
+
+/// The steady states where a picture shows them, each with the band of its stress.
+pub fn points(items: &[Item], banded: &[Banded]) -> Vec<PointAt> {
+    let pairs = items.iter().zip(banded);
+    let point = |(item, known): (&Item, &Banded)| {
+        // The stress is the first of the columns.
+        let (stress, band) = (item.numbers.first()?, known.bands.first()?);
+        Some(PointAt {
+            x: stress.value,
+            y: None,
+            along: band.linear,
+            across: None,
+        })
+    };
+    pairs.filter_map(point).collect()
 }
 
 /// How many draws have how many steady states, as parts of all.

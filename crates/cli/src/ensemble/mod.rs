@@ -260,6 +260,11 @@ impl Ensemble<'_> {
         let items = equilibria::items(&estimate);
         let members = self.members(0);
         let known = self.known(&members, &items, (&equilibria::items, [&[]; 2]))?;
+        if let Some(mut drawing) = estimate.picture.take() {
+            let points = equilibria::points(&items, &known.banded);
+            picture::with_bands(&mut drawing, &picture::BandsAt::default(), &points);
+            estimate.picture = Some(drawing);
+        }
         let (rows, lines) = equilibria::finish(&mut estimate, &items, &known.banded);
         let mut ensemble = self.told(&members, known.draws, Some((&known.check, &items)));
         ensemble["counts"] = json!(equilibria::counts(&known.counts));

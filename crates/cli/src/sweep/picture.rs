@@ -99,11 +99,13 @@ fn basins(plan: &SweepPlan, outcomes: &[PointOutcome]) -> Option<Basins> {
     let units = plan.system.units();
     let label = |i: usize| {
         let name = format!("{} at the start", symbol(&states.names[i]));
-        views::quantity_label(&name, states.quantities[i], units)
+        views::axis_label(&name, states.quantities[i], units)
     };
     let loading = plan.settings.parameters(0);
     let title = match (&plan.system, &loading[..]) {
-        (Swept::Text(model), _) if model.slab.is_none() => format!("of {}", model.name()),
+        (Swept::Text(model), _) if model.slab.is_none() => {
+            format!("of {}", views::with_parameters(model))
+        }
         (_, [driving, stiffness, ..]) => {
             format!("at {}", views::parameters(*driving, *stiffness, units))
         }

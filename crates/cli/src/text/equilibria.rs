@@ -2,7 +2,7 @@
 
 use crate::Ending;
 use crate::call::Call;
-use crate::report::Report;
+use crate::report::{self, Report};
 use crate::words::several;
 use serde_json::{Map, Value, json};
 use twinslip::equilibrium::Verdict;
@@ -17,11 +17,15 @@ use twinslip_tasks::views;
 
 pub fn run(options: &EquilibriaOptions, model: TextModel, call: &Call) -> Result<Ending> {
     let plan = TextEquilibriaPlan::new(options, model)?;
-    let report = Report::new(&options.output, call, &[])?;
-    if options.output.explain {
-        call.say(plan.explain());
-    }
+    let outputs = (&options.output, options.plot.as_deref());
+    let report = report::begun(outputs, call, || plan.explain())?;
     let found = plan.solve()?;
+    if let Some(path) = &options.plot {
+        match views::picture_of_text_equilibria(&plan.model, &found.equilibria) {
+            Some(drawing) => report.draw(path, &drawing)?,
+            None => report.say("there is no steady state to draw"),
+        }
+    }
     let ending = write(&report, &plan, &found)?;
     let undecided = |one: &&TextEquilibrium| one.stability.verdict == Verdict::Undecided;
     let verdicts = found.equilibria.iter().filter(undecided).count();

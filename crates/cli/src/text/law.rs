@@ -2,7 +2,8 @@
 
 use crate::Ending;
 use crate::call::Call;
-use crate::law::{begun, picture, write};
+use crate::law::write;
+use crate::report;
 use twinslip::error::Result;
 use twinslip_tasks::scene::{
     Described, LawCurve, LawOptions, TextLawPlan, TextLawPoint, TextModel,
@@ -11,11 +12,12 @@ use twinslip_tasks::views;
 
 pub fn run(options: &LawOptions, model: TextModel, call: &Call) -> Result<Ending> {
     let plan = TextLawPlan::new(options, model)?;
-    let report = begun(options, call, || plan.explain())?;
+    let outputs = (&options.output, options.plot.as_deref());
+    let report = report::begun(outputs, call, || plan.explain())?;
     let (curves, failure) = plan.curves()?;
     if let Some(path) = &options.plot {
         let curves: Vec<LawCurve> = curves.iter().map(plain).collect();
-        report.draw(path, &picture(plan.model.units(), &curves))?;
+        report.draw(path, &views::picture_of_law(plan.model.units(), &curves))?;
     }
     let columns = views::text_law_columns(curves.len() > 1);
     let ending = write(

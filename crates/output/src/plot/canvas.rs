@@ -222,6 +222,12 @@ impl Canvas {
         };
         let size = size * FINE;
         let parts = text::parts(text);
+        // Some viewers drop the spaces at the ends of each part, as that after a subscript.
+        let spaces = if parts.len() > 1 {
+            " xml:space=\"preserve\""
+        } else {
+            ""
+        };
         if self.words == Words::Outlines {
             let begin = f64::from(x) - align.before() * text::advance(&parts, size);
             let path = text::outlines(&parts, (begin, f64::from(y) + MIDDLE * size), size);
@@ -237,7 +243,7 @@ impl Canvas {
         };
         self.put(format_args!(
             "<text x=\"{x}\" y=\"{y}\" dy=\"{:.0}\" text-anchor=\"{anchor}\" font-family=\"{FAMILY}\" font-size=\"{size}\" \
-            fill=\"{colour}\"{turned}>",
+            fill=\"{colour}\"{turned}{spaces}>",
             MIDDLE * size
         ));
         // How far below the line the part before ended.

@@ -18,6 +18,9 @@ const WIDE: f64 = 2.7;
 const COVERED: f64 = 0.35;
 const SQUARE: f64 = 16.0;
 const FINEST: f64 = 0.4;
+/// More lines than this in a panel are drawn finer, down to the finest of many, if they run close beside each other.
+const MANY: usize = 24;
+const FINEST_OF_MANY: f64 = 0.6;
 /// How dense the area between the envelopes of oscillations is.
 const VEIL: f64 = 0.3;
 /// Room between a curve and the map that it lies on.
@@ -46,12 +49,12 @@ pub fn line_width(panel: &Panel, number: usize) -> f64 {
 /// Draws the curves and gives points along them, densely.
 pub fn curves(canvas: &Canvas, panel: &Panel, frame: &Frame) -> Vec<Pixel> {
     let mut seen = Vec::new();
-    for (number, series) in panel.series.iter().enumerate() {
+    let widths = drawn_widths(panel, frame);
+    for ((number, series), width) in panel.series.iter().enumerate().zip(widths) {
         if panel.cells.is_some() {
-            let breadth = line_width(panel, number);
-            casing(canvas, series, frame, breadth);
+            casing(canvas, series, frame, width);
         }
-        let look = (series_colour(series, number), line_width(panel, number));
+        let look = (series_colour(series, number), width);
         if series.dots {
             seen.extend(dots(canvas, series, frame, look));
         } else {
@@ -88,14 +91,26 @@ fn pieces(series: &PlotSeries, frame: &Frame) -> Vec<Vec<Pixel>> {
         .collect()
 }
 
-/// How broad the line of the series of this number is drawn, or the radius of its points.
-pub fn drawn_width(panel: &Panel, number: usize, frame: &Frame) -> f64 {
-    let (series, width) = (&panel.series[number], line_width(panel, number));
-    if series.dots || series.x.is_sorted() {
-        width
-    } else {
-        finer(width, &pieces(series, frame))
+/// How broad the line of each series is drawn, or the radius of its points.
+pub fn drawn_widths(panel: &Panel, frame: &Frame) -> Vec<f64> {
+    let all = || panel.series.iter().enumerate();
+    let lines = || all().filter(|(_, series)| !series.dots);
+    if lines().count() > MANY {
+        let pieces: Vec<Vec<Pixel>> = lines().flat_map(|(_, line)| pieces(line, frame)).collect();
+        let usual = lines().map(|(i, _)| line_width(panel, i));
+        let usual = usual.fold(0.0, f64::max);
+        let part = finer(usual, FINEST_OF_MANY, &pieces) / usual;
+        let width = |(i, series): (usize, &PlotSeries)| match series.dots {
+            true => line_width(panel, i),
+            false => part * line_width(panel, i),
+        };
+        return all().map(width).collect();
     }
+    let width = |(i, series): (usize, &PlotSeries)| match series.dots || series.x.is_sorted() {
+        true => line_width(panel, i),
+        false => finer(line_width(panel, i), FINEST, &pieces(series, frame)),
+    };
+    all().map(width).collect()
 }
 
 fn line(
@@ -107,7 +122,6 @@ fn line(
     let grows = series.x.is_sorted();
     let (mut seen, mut been) = (Vec::new(), strokes::Been::default());
     let pieces = pieces(series, frame);
-    let width = if grows { width } else { finer(width, &pieces) };
     for piece in pieces {
         seen.extend(names::along(&piece, SAMPLES));
         let stretches = if grows {
@@ -135,8 +149,8 @@ fn line(
     seen
 }
 
-/// The breadth of a path that goes around again and again: so fine that its turns stand apart, if they can.
-fn finer(width: f64, pieces: &[Vec<Pixel>]) -> f64 {
+/// The breadth of paths that go around again and again: so fine that their turns stand apart, if they can.
+fn finer(width: f64, finest: f64, pieces: &[Vec<Pixel>]) -> f64 {
     let mut lengths: HashMap<(i64, i64), f64> = HashMap::new();
     let places = pieces.iter().map(|piece| names::along(piece, SAMPLES));
     for place in places {
@@ -149,7 +163,7 @@ fn finer(width: f64, pieces: &[Vec<Pixel>]) -> f64 {
     }
     let longest = lengths.into_values().fold(0.0, f64::max);
     let covered = longest * width / (SQUARE * SQUARE);
-    (width * (COVERED / covered).min(1.0)).max(FINEST)
+    (width * (COVERED / covered).min(1.0)).max(finest.min(width))
 }
 
 fn dots(

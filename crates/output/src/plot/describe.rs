@@ -3,7 +3,7 @@
 use super::areas::{OPACITY, pieces};
 use super::canvas::{Colour, INK, MARK, Pixel, Words, colour, picture};
 use super::cells::tint;
-use super::curves::{curves, drawn_width, series_colour, through};
+use super::curves::{curves, drawn_widths, series_colour, through};
 use super::frame::Frame;
 use super::layout::{Placed, page};
 use super::marks::{self, Written};
@@ -43,7 +43,7 @@ fn panel(placed: &Placed<'_>) -> Value {
     });
     let written = marks::notes(panel, frame, &seen);
     let (inside, (x, y)) = (frame.inside(), frame.scales());
-    let numbered = panel.series.iter().enumerate();
+    let (numbered, widths) = (panel.series.iter().enumerate(), drawn_widths(panel, frame));
     json!({
         "title": panel.title,
         "frame": [inside.x.1 - inside.x.0, inside.y.1 - inside.y.0],
@@ -52,7 +52,7 @@ fn panel(placed: &Placed<'_>) -> Value {
         "zero_line": panel.zero_line,
         "cells": panel.cells.as_ref().map(cells),
         "areas": panel.areas.iter().map(|area| areas(area, frame)).collect::<Vec<_>>(),
-        "series": numbered.map(|(i, one)| series(panel, (i, one), frame)).collect::<Vec<_>>(),
+        "series": numbered.map(|(i, one)| series((i, one), widths[i], frame)).collect::<Vec<_>>(),
         "marks": named_marks(panel, frame, &seen, &written),
         "notes": notes(frame, &written),
         "strokes": panel.strokes.iter().map(|(broken, label)| json!({
@@ -93,7 +93,7 @@ fn cells(map: &Cells) -> Value {
     })
 }
 
-fn series(panel: &Panel, (number, series): (usize, &PlotSeries), frame: &Frame) -> Value {
+fn series((number, series): (usize, &PlotSeries), width: f64, frame: &Frame) -> Value {
     let (x, y) = if series.dots {
         (series.x.clone(), series.y.clone())
     } else {
@@ -107,7 +107,7 @@ fn series(panel: &Panel, (number, series): (usize, &PlotSeries), frame: &Frame) 
         "y": y,
         "dots": series.dots,
         "stroke": stroke(series.stroke),
-        "width": drawn_width(panel, number, frame),
+        "width": width,
         "colour": told(series_colour(series, number)),
     })
 }

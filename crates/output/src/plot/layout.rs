@@ -11,14 +11,14 @@ use super::{Block, Panel};
 use crate::error::Result;
 
 /// Width of a picture with one column of panels, and of each of several: so narrow that words stay legible where the picture is shown
-/// smaller.
-const COLUMN: f64 = 560.0;
+/// smaller, those of one column at least 11 pixels high on a screen of 390.
+const COLUMN: f64 = 460.0;
 const NARROW: f64 = 390.0;
 /// Height of a block per panel of its highest column, and at least, if it is all the picture.
 const ROW: f64 = 215.0;
-const LEAST: f64 = 470.0;
+const LEAST: f64 = 400.0;
 /// Of one or two panels one below the other across the whole picture.
-const HIGH_ROW: f64 = 360.0;
+const HIGH_ROW: f64 = 320.0;
 /// Least height of one that is narrow, or one of several.
 const LOW_LEAST: f64 = 300.0;
 /// Room at the left and the right of a column; more where the labels need it.

@@ -57,8 +57,16 @@ impl Heading {
     /// Height of one line.
     pub const LEAST: f64 = AROUND + LINE;
 
-    /// That of a panel, on lines of this length.
+    /// That of a panel, on lines of this length. A legend that has no room beside the title begins below it.
     pub fn new(panel: &Panel, limit: f64) -> Self {
+        let beside = Heading::arranged(panel, limit, false);
+        if beside.lines == 1 {
+            return beside;
+        }
+        Heading::arranged(panel, limit, true)
+    }
+
+    fn arranged(panel: &Panel, limit: f64, title_alone: bool) -> Self {
         let mut flow = Flow {
             heading: Heading {
                 entries: Vec::new(),
@@ -68,6 +76,11 @@ impl Heading {
             limit,
         };
         flow.add(LegendSymbol::Nothing, &panel.title, INK, AFTER_TITLE);
+        if title_alone {
+            flow.used = flow
+                .used
+                .max(limit * f64::from(u8::from(!panel.title.is_empty())));
+        }
         for swatch in panel.cells.iter().flat_map(|map| &map.swatches) {
             let colours: Vec<Colour> = swatch.shades.iter().copied().map(tint).collect();
             let sample = if colours.is_empty() {

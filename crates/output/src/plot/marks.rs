@@ -15,6 +15,9 @@ const BACKING: f64 = 2.0;
 const TIED: f64 = 12.0;
 /// Points nearer than this look like one: they share a name.
 const ONE: f64 = 3.0;
+/// Of more names than this in a panel, those of symbols that touch are one, with the number of points that it stands for.
+const CROWD: usize = 8;
+const TOUCH: f64 = 12.0;
 /// Breadth of bars, and half the length of the lines at their ends.
 const BAR: f64 = 1.2;
 const CAP: f64 = 3.5;
@@ -172,29 +175,40 @@ fn shown<'a>(panel: &'a Panel, frame: &Frame) -> Vec<Shown<'a>> {
         let Some(at) = frame.place(mark.x, mark.y) else {
             continue;
         };
-        let near = |one: &&mut Shown<'_>| {
-            let (x, y) = one.named.at;
-            let named = !one.name.is_empty() && !mark.label.is_empty();
-            named && (x - at.0).hypot(y - at.1) < ONE
-        };
-        let name = match shown.iter_mut().find(near) {
-            Some(one) => {
-                if one.name.split(", ").all(|name| name != mark.label) {
-                    one.name = format!("{}, {}", one.name, mark.label);
-                }
-                String::new()
-            }
-            None => mark.label.clone(),
-        };
         let (size, side) = ((0.0, 0.0), mark.side);
         shown.push(Shown {
             mark,
-            name,
+            name: String::new(),
             named: names::Named { at, size, side },
         });
     }
-    for one in shown.iter_mut().filter(|one| !one.name.is_empty()) {
-        one.named.size = (text::width(&one.name, TEXT) + AIR, TEXT + AIR);
+    let named = |one: &Shown<'_>| !one.mark.label.is_empty();
+    let crowd = shown.iter().filter(|one| named(one)).count() > CROWD;
+    // Each name at the first of the points that it stands for, with those of the others.
+    let mut together: Vec<(usize, Vec<(&str, usize)>)> = Vec::new();
+    for (i, one) in shown.iter().enumerate().filter(|(_, one)| named(one)) {
+        let near = |(first, _): &&mut (usize, Vec<(&str, usize)>)| {
+            let ((x, y), (a, b)) = (shown[*first].named.at, one.named.at);
+            (x - a).hypot(y - b) < if crowd { TOUCH } else { ONE }
+        };
+        let label = one.mark.label.as_str();
+        let Some((_, names)) = together.iter_mut().find(near) else {
+            together.push((i, vec![(label, 1)]));
+            continue;
+        };
+        match names.iter_mut().find(|(name, _)| *name == label) {
+            Some((_, count)) => *count += 1,
+            None => names.push((label, 1)),
+        }
+    }
+    for (i, names) in together {
+        let each = names.into_iter().map(|(name, count)| match count {
+            2.. if crowd => format!("{name} ×{count}"),
+            _ => name.to_owned(),
+        });
+        let name = each.collect::<Vec<_>>().join(", ");
+        shown[i].named.size = (text::width(&name, TEXT) + AIR, TEXT + AIR);
+        shown[i].name = name;
     }
     shown
 }

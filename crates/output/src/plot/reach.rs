@@ -12,8 +12,9 @@ const MARKED_MARGIN: f64 = 0.26;
 /// The same where the names stand where there is room.
 const FREE_MARGIN: f64 = 0.1;
 
-/// How far a band may widen the range on either side, in lengths of that of all else.
+/// How far a band may widen the range on either side, in lengths of that of all else, or as a multiple of its usual breadth.
 const BAND: f64 = 2.0;
+const BREADTH: f64 = 1.5;
 
 /// The ranges of both axes.
 ///
@@ -22,8 +23,11 @@ const BAND: f64 = 2.0;
 pub fn scales(panel: &Panel) -> Result<(Scale, Scale)> {
     // A function of time ends with its data, and so does a map; a phase plane needs air around it, and so do names above and
     // below.
-    let function = |series: &PlotSeries| !series.dots && series.x.is_sorted();
-    let tight = panel.cells.is_some() || panel.series.iter().all(function);
+    let level = |x: &[f64]| x.first() == x.last();
+    let function = |series: &PlotSeries| !series.dots && series.x.is_sorted() && !level(&series.x);
+    let drawn = || panel.series.iter().filter(|series| !series.x.is_empty());
+    let in_time = drawn().next().is_some() && drawn().all(function);
+    let tight = panel.cells.is_some() || in_time;
     let margin = match panel.marks.first().map(|mark| mark.side) {
         _ if panel.cells.is_some() => 0.0,
         None => MARGIN,
@@ -98,9 +102,15 @@ fn reaches(panel: &Panel) -> (Reach, Reach) {
     if panel.zero_line {
         ys.take(coordinate(panel.y.log, 0.0));
     }
-    // What is likely of a curve may go far beyond all: the frame then cuts it.
-    let room = ys.widened(BAND);
+    // What is likely of a curve may go far beyond all in places: the frame then cuts it. Where it does so everywhere it sets the range.
     for area in &panel.areas {
+        let sides = area.lower.iter().zip(&area.upper);
+        let breadths = sides.map(|(&low, &high)| {
+            let (_, low) = at(1.0, low);
+            let (_, high) = at(1.0, high);
+            high - low
+        });
+        let room = ys.widened(BAND, BREADTH * median(breadths));
         let sides = [&area.lower, &area.upper];
         let points = sides.iter().flat_map(|side| area.x.iter().zip(*side));
         for (&x, &y) in points {
@@ -113,21 +123,30 @@ fn reaches(panel: &Panel) -> (Reach, Reach) {
     (xs, ys)
 }
 
+/// The middle one of the numbers that are finite; zero if none is.
+fn median(numbers: impl Iterator<Item = f64>) -> f64 {
+    let mut numbers: Vec<f64> = numbers.filter(|x| x.is_finite()).collect();
+    numbers.sort_by(f64::total_cmp);
+    numbers.get(numbers.len() / 2).copied().unwrap_or(0.0)
+}
+
 #[cfg(test)]
 mod test {
     use super::super::{Area, Axis};
     use super::*;
 
-    /// A level line at -1 below a line at zero, with a band around it.
-    fn range_with_band(side: f64) -> (f64, f64) {
-        let x = vec![0.0, 1.0];
+    /// A level line at -1 below a line at zero, with a band around it that is broader by a factor at the last of its points.
+    fn range_with_band(side: f64, last: f64) -> (f64, f64) {
+        let x: Vec<f64> = (0..10).map(f64::from).collect();
+        let mut sides = vec![side; 10];
+        sides[9] *= last;
         let panel = Panel {
-            series: vec![PlotSeries::new("", x.clone(), vec![-1.0; 2])],
+            series: vec![PlotSeries::new("", x.clone(), vec![-1.0; 10])],
             areas: vec![Area {
                 label: String::new(),
                 x,
-                lower: vec![-1.0 - side; 2],
-                upper: vec![-1.0 + side; 2],
+                lower: sides.iter().map(|side| -1.0 - side).collect(),
+                upper: sides.iter().map(|side| -1.0 + side).collect(),
                 colour: 0,
                 left_out: Vec::new(),
             }],
@@ -139,12 +158,16 @@ mod test {
     }
 
     #[test]
-    fn a_band_is_seen_whole_unless_it_goes_far_beyond_all_else() {
-        let (low, high) = range_with_band(0.5);
-        assert!((-1.7..=-1.5).contains(&low) && (0.0..0.2).contains(&high));
-        let (low, high) = range_with_band(1.9);
+    fn a_band_is_seen_whole_unless_it_goes_far_beyond_all_else_in_places() {
+        let (low, high) = range_with_band(0.5, 1.0);
+        assert!((-1.7..=-1.5).contains(&low) && high == 0.0);
+        let (low, high) = range_with_band(1.9, 1.0);
         assert!((-3.2..=-2.9).contains(&low) && (0.9..1.1).contains(&high));
-        let (low, high) = range_with_band(1e6);
+        // In one place: it is cut.
+        let (low, high) = range_with_band(0.5, 1e6);
         assert!((-3.4..=-3.0).contains(&low) && (2.0..2.4).contains(&high));
+        // Everywhere: the frame is not a rectangle of its colour.
+        let (low, high) = range_with_band(1e6, 1.0);
+        assert!(low < -1.04e6 && high > 1.04e6, "{low}, {high}");
     }
 }

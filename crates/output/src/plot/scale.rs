@@ -4,8 +4,11 @@ use super::Axis;
 
 /// Decades on a logarithmic axis, at least.
 const NARROWEST: f64 = 0.5;
-/// Relative differences smaller than this are those of a constant.
-const CONSTANT: f64 = 1e-5;
+/// The range of data whose relative differences are smaller than this is this wide.
+const NARROW: f64 = 1e-5;
+/// Relative differences smaller than this are rounding: the data is a constant, with so much room around it as a part of it.
+const CONSTANT: f64 = 1e-9;
+const AROUND: f64 = 0.05;
 
 /// An axis with its range, in the coordinate that is drawn: log10 for a logarithmic axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,9 +47,9 @@ impl Reach {
 }
 
 impl Reach {
-    /// With so many times its length more on either side.
-    pub fn widened(&self, times: f64) -> Self {
-        let more = times * (self.hi - self.lo);
+    /// With so many times its length more on either side, and not less than `least`.
+    pub fn widened(&self, times: f64, least: f64) -> Self {
+        let more = (times * (self.hi - self.lo)).max(least);
         Reach {
             lo: self.lo - more,
             hi: self.hi + more,
@@ -78,16 +81,28 @@ impl Scale {
         let pad = if log {
             (0.5 * (NARROWEST - (hi - lo))).max(margin * (hi - lo))
         } else {
-            let least = CONSTANT * lo.abs().max(hi.abs()).max(1e-300);
-            if hi - lo < least {
-                least
-            } else {
-                margin * (hi - lo)
+            let size = lo.abs().max(hi.abs());
+            match hi - lo {
+                0.0 if size == 0.0 => 1.0,
+                range if range <= CONSTANT * size => AROUND * size,
+                range if range < NARROW * size => NARROW * size,
+                range => margin * range,
             }
         };
+        // What is never negative, as a stiffness or a count, has an axis without negative numbers.
+        let positive = !log && lo >= 0.0;
+        let negative = !log && hi <= 0.0 && lo < 0.0;
         Some(Scale {
-            lo: lo - pad,
-            hi: hi + pad,
+            lo: if positive {
+                (lo - pad).max(0.0)
+            } else {
+                lo - pad
+            },
+            hi: if negative {
+                (hi + pad).min(0.0)
+            } else {
+                hi + pad
+            },
             log,
         })
     }
@@ -130,11 +145,28 @@ mod test {
     }
 
     #[test]
+    fn axes_of_what_is_never_negative_begin_at_zero() {
+        let ends = |lo, hi| {
+            let scale = Scale::new(&Axis::linear("K"), reach(lo, hi), 0.1).unwrap();
+            (scale.lo, scale.hi)
+        };
+        assert_eq!(ends(0.0, 10.0), (0.0, 11.0));
+        assert_eq!(ends(0.5, 10.5), (0.0, 11.5));
+        assert_eq!(ends(5.0, 10.0), (4.5, 10.5));
+        assert_eq!(ends(-10.0, 0.0), (-11.0, 0.0));
+        assert_eq!(ends(-1.0, 9.0), (-2.0, 10.0));
+    }
+
+    #[test]
     fn ranges_hold_the_data_unless_they_are_fixed() {
         let scale = Scale::new(&Axis::linear("t"), reach(0.0, 2000.0), 0.0).unwrap();
         assert_eq!((scale.lo, scale.hi), (0.0, 2000.0));
         let constant = Scale::new(&Axis::linear("t"), reach(3.0, 3.0), 0.0).unwrap();
-        assert!(constant.lo < 3.0 && constant.hi > 3.0);
+        assert!(constant.lo < 2.9 && constant.hi > 3.1);
+        let zero = Scale::new(&Axis::linear("n"), reach(0.0, 0.0), 0.1).unwrap();
+        assert_eq!((zero.lo, zero.hi), (0.0, 1.0));
+        let narrow = Scale::new(&Axis::linear("t"), reach(1e6, 1e6 + 1.0), 0.0).unwrap();
+        assert!(narrow.hi - narrow.lo < 25.0, "{narrow:?}");
         let fixed = Axis::log("v").within(1e3, 1e-2);
         let scale = Scale::new(&fixed, Reach::none(), 0.3).unwrap();
         assert_eq!((scale.lo, scale.hi), (-2.0, 3.0));

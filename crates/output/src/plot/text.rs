@@ -140,13 +140,31 @@ impl OutlineBuilder for Outline<'_> {
     }
 }
 
+/// The words of a text; a symbol and its value, as in `K = 0.14`, are one.
+fn words(text: &str) -> Vec<String> {
+    let mut words: Vec<String> = Vec::new();
+    let mut joined = false;
+    for word in text.split_whitespace() {
+        let sign = word == "=";
+        match words.last_mut() {
+            Some(last) if sign || joined => {
+                last.push(' ');
+                last.push_str(word);
+            }
+            _ => words.push(word.to_owned()),
+        }
+        joined = sign;
+    }
+    words
+}
+
 /// The lines of a text none of which is wider than `limit`: broken between words, and within one that is too long alone.
 pub fn wrapped(text: &str, size: f64, limit: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     let mut line = String::new();
-    for word in text.split_whitespace() {
+    for word in words(text) {
         let longer = if line.is_empty() {
-            word.to_owned()
+            word.clone()
         } else {
             format!("{line} {word}")
         };
@@ -198,5 +216,8 @@ mod test {
         }
         assert_eq!(lines.concat().replace(' ', ""), text.replace(' ', ""));
         assert_eq!(wrapped("short", TEXT, 120.0), ["short"]);
+        // A value stays with its symbol.
+        let lines = wrapped("return map, V_H = 0.102", TEXT, 120.0);
+        assert_eq!(lines, ["return map,", "V_H = 0.102"]);
     }
 }

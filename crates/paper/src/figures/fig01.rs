@@ -105,7 +105,7 @@ fn stiffness_panel() -> Panel {
     panel.notes = vec![
         Note::new(3e-6, 7e3, "unstable: stick-slip"),
         Note::new(3e-6, 1.8e4, "stable"),
-        Note::new(1.2e-9, 4.5e3, "law (6): stable for any k"),
+        Note::new(1.5e-9, 4.5e3, "stable for any k"),
     ];
     panel
 }

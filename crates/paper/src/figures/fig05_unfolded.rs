@@ -51,6 +51,11 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
     all.keys = keys(labels);
     all.strokes = named_strokes(&all.series[1..]);
     all.series[0].label = "c₂ = c₁".into();
+    // In the legend alone: the curves have a series for each stroke.
+    for (colour, name) in ["first fast", "second fast"].into_iter().enumerate() {
+        let curve = PlotSeries::new(name, Vec::new(), Vec::new());
+        all.series.push(curve.colour(colour));
+    }
     let near = |panel: Panel, [x, y]: [(f64, f64); 2]| {
         let mut panel = panel;
         panel.x = panel.x.within(x.0, x.1);

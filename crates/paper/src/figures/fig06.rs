@@ -1,6 +1,7 @@
 //! Fig. 6: the phase diagram, all curves of bifurcations in the (V_H, K) plane.
 
 use super::plane::{in_plane, method, resonances};
+use super::regimes::regimes;
 use crate::pieces::Pieces;
 use crate::product::{Made, Make, Product};
 use crate::sheet::Sheet;
@@ -43,7 +44,13 @@ const CURVES: [(&str, &str, usize, Stroke, bool); 7] = [
         Stroke::Dashed,
         false,
     ),
-    ("fig06", "H: Hopf points", 1, Stroke::DashDot, true),
+    (
+        "fig06",
+        "H: Hopf points, H_a asymmetric, H_s symmetric",
+        1,
+        Stroke::DashDot,
+        true,
+    ),
     (
         "fig06-orbit-pitchforks",
         "PF: pitchforks of orbits",
@@ -89,6 +96,7 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
     let mut double = resonances(&torus);
     double.retain(|mark| mark.label == "1:2");
     panel.marks = double;
+    panel.areas = regimes(pieces)?;
     let mut corner = Panel {
         x: Axis::log("driving velocity V_H [V*]").within(CORNER[0].0, CORNER[0].1),
         y: Axis::linear("stiffness K [aσ/L]").within(CORNER[1].0, CORNER[1].1),
@@ -97,6 +105,9 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
     };
     for series in &mut corner.series {
         series.label.clear();
+    }
+    for area in &mut corner.areas {
+        area.label.clear();
     }
     corner.notes = vec![
         Note::new(0.052, 0.21, "2 V_M"),
@@ -108,12 +119,11 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
         Note::new(0.084, 0.12, "PD"),
     ];
     panel.notes = vec![
-        Note::new(7e-3, 0.33, "both slide"),
-        Note::new(7.0, 0.428, "one slides, steadily"),
-        Note::new(4.0, 0.27, "asymmetric stick-slip"),
-        Note::new(6e3, 0.2, "one or both"),
+        Note::new(7e-3, 0.33, "both"),
+        Note::new(7.0, 0.428, "one slides"),
+        Note::new(4.0, 0.27, "asymmetric"),
         Note::new(7e5, 0.33, "both slide"),
-        Note::new(25.0, 0.075, "symmetric too"),
+        Note::new(25.0, 0.06, "symmetric too"),
         Note::new(0.022, 0.4, "2 V_M"),
         Note::new(2000.0, 0.4, "2 V_m"),
         Note::new(1.4e5, 0.4, "V_sn"),

@@ -35,13 +35,17 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
     sheet.add_curves("PD", &doubling);
     let panel = |title: &str, [x, y]: [(f64, f64); 2]| Panel {
         series: vec![
-            in_plane(&torus, "TR", (2, Stroke::Solid)).wide(),
+            in_plane(&torus, "TR: torus", (2, Stroke::Solid)).wide(),
             PlotSeries {
                 wide: true,
-                ..in_plane(&doubling, "PD", (3, Stroke::Dotted))
+                ..in_plane(&doubling, "PD: period doubling", (3, Stroke::Dotted))
             },
-            in_plane(&hopf, "H", (1, Stroke::DashDot)),
-            in_plane(&forks, "pf", (0, Stroke::Solid)),
+            in_plane(
+                &hopf,
+                "H: Hopf points, H_a asymmetric, H_s symmetric",
+                (1, Stroke::DashDot),
+            ),
+            in_plane(&forks, "pf: pitchforks of equilibria", (0, Stroke::Solid)),
         ],
         marks: resonances(&torus),
         ..Panel::new(
@@ -57,12 +61,13 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
         Note::new(0.1235, 0.118, "H_s"),
         Note::new(0.0545, 0.225, "2 V_M"),
     ];
+    let mut near = panel("(b) near 1:2", NEAR);
+    for series in &mut near.series {
+        series.label.clear();
+    }
     Ok(Made {
         sheet,
-        drawing: Some(Drawing::columns(vec![vec![
-            whole,
-            panel("(b) near 1:2", NEAR),
-        ]])),
+        drawing: Some(Drawing::columns(vec![vec![whole, near]])),
         method: method(torus.plan.following.tolerance),
     })
 }

@@ -2,6 +2,7 @@
 
 mod curve;
 mod plane;
+mod regimes;
 mod runs;
 
 pub mod fig01;

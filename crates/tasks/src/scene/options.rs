@@ -387,6 +387,10 @@ pub struct EquilibriaOptions {
     /// kinsol or newton, both to the same digits [default: kinsol; newton in a build without SUNDIALS]
     #[arg(long, value_name = "NAME", conflicts_with = "system", value_parser = Names::of(["kinsol", "newton"]), hide_possible_values = true, help_heading = "Numerics")]
     pub solver: Option<String>,
+    /// Draw the states against the stress, filled where stable, and the eigenvalues, with --draw what each interface does against its
+    /// constants, as FILE.svg or FILE.png
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub plot: Option<PathBuf>,
     /// Where results go.
     #[command(flatten)]
     pub output: OutputOptions,

@@ -1,5 +1,7 @@
 //! Slip events of many interfaces: their rows and their picture.
 
+use super::diagram::axis_label;
+use super::many::nominal;
 use crate::scene::{CellValue, Column, Drawn, ManyPlan, Participant, Quantity};
 use twinslip::many::ManyEvent;
 use twinslip_output::plot::{Axis, Drawing, Panel, PlotSeries};
@@ -87,7 +89,8 @@ pub fn picture_of_events(plan: &ManyPlan, events: &[ManyEvent]) -> Drawing {
         let few = events.len() <= FEW;
         vec![if few { points.wide() } else { points }]
     };
-    let size = Axis::log("slip of all participants S");
+    let label = |name: &str, quantity| axis_label(name, quantity, &nominal());
+    let size = Axis::log(label("slip of all participants S", Quantity::Length));
     // Without points an axis has no ends of its own.
     let size = match events {
         [] => size.within(1.0, 10.0),
@@ -107,7 +110,7 @@ pub fn picture_of_events(plan: &ManyPlan, events: &[ManyEvent]) -> Drawing {
             series: points(onsets, shares.collect()),
             ..Panel::new(
                 "share that slips",
-                Axis::linear("onset t").within(0.0, plan.until),
+                Axis::linear(label("onset t", Quantity::Time)).within(0.0, plan.until),
                 Axis::log("participants / N").within(0.8 / count as f64, 1.25),
             )
         }],

@@ -1,6 +1,7 @@
 //! Branches of equilibria of many interfaces: their columns, and the staircase of stress against V_H.
 
-use super::diagram::{axis_label, distinct, fixed, named_strokes};
+use super::diagram::{axis_label, fixed};
+use super::labels::{colour_name, distinct, meanings, named_strokes};
 use crate::scene::{BranchParameter, CellValue, Column, Quantity, System};
 use twinslip::bifurcation::clusters::{ClusterOfRow, ClusterRow};
 use twinslip::bifurcation::{Label, Parameter};
@@ -77,10 +78,13 @@ pub fn staircase(
         Label::Bp | Label::Lp if row.clusters.len() > 1 => None,
         label => Some((label, x(row), y(row))),
     };
-    let special = rows.iter().filter_map(named);
-    let mut marks = distinct(special, true);
+    let special: Vec<(Label, f64, f64)> = rows.iter().filter_map(named).collect();
+    let labels = special.iter().map(|(label, ..)| *label);
+    let mut keys = meanings(labels);
+    let mut marks = distinct(special.into_iter(), true);
     if marks.len() > MOST_MARKS {
         marks.clear();
+        keys.clear();
     }
     let series = lines(rows, slab.interfaces, &x, &y);
     let symbol = match along.parameter {
@@ -91,6 +95,7 @@ pub fn staircase(
         strokes: named_strokes(&series),
         series,
         marks,
+        keys,
         ..Panel::new(
             format!(
                 "equilibria of {} interfaces at {}",
@@ -143,12 +148,10 @@ fn lines(
             });
         }
     }
-    for (i, name) in names.into_iter().enumerate() {
-        if let Some(first) = all.iter_mut().find(|one| one.colour == Some(i)) {
-            first.label = name.to_owned();
-        }
-    }
-    all
+    let occurs = |colour: usize| all.iter().any(|one| one.colour == Some(colour));
+    let legend = names.into_iter().enumerate().filter(|(i, _)| occurs(*i));
+    let legend: Vec<PlotSeries> = legend.map(|(i, name)| colour_name(name, i)).collect();
+    [legend, all].concat()
 }
 
 /// Between two points: stable if one is, and the other is, or is a bifurcation.

@@ -1,5 +1,6 @@
 //! Bifurcation diagrams, and curves in the plane of V_H and K.
 
+use super::labels::{colour_name, distinct, meanings, named_strokes};
 use crate::scene::{BranchParameter, Quantity, System, Units};
 use twinslip::bifurcation::{BranchRow, Label, LocusRow, Parameter, Special};
 use twinslip::equilibrium::{Symmetry, Verdict};
@@ -44,6 +45,7 @@ pub fn branches(
         strokes: named_strokes(&series),
         series,
         marks: points,
+        keys: meanings(rows.iter().filter_map(|row| row.label)),
         ..Panel::new(
             format!("{what} at {}", fixed(along, slab, units)),
             x.clone(),
@@ -86,6 +88,11 @@ pub fn parameters(driving: f64, stiffness: f64, units: &Units) -> String {
 
 /// A symbol with its value and unit, but for that of what has none.
 pub(super) fn value(name: &str, quantity: Quantity, x: f64, units: &Units) -> String {
+    format!("{name} = {}", number(quantity, x, units))
+}
+
+/// A value with its unit, but for that of what has none.
+pub(super) fn number(quantity: Quantity, x: f64, units: &Units) -> String {
     let digits = seven_digits(units.outward(quantity, x));
     let (mantissa, exponent) = digits.split_at(digits.find('e').unwrap_or(digits.len()));
     let mantissa = match mantissa.contains('.') {
@@ -97,12 +104,15 @@ pub(super) fn value(name: &str, quantity: Quantity, x: f64, units: &Units) -> St
     } else {
         String::new()
     };
-    format!("{name} = {mantissa}{exponent}{unit}")
+    format!("{mantissa}{exponent}{unit}")
 }
 
-/// The label of an axis: name and unit.
+/// The label of an axis: name and unit, but for that of a number without one.
 pub fn axis_label(name: &str, quantity: Quantity, units: &Units) -> String {
-    format!("{name} [{}]", units.short_name(quantity))
+    match units.short_name(quantity).as_str() {
+        "" | "1" => name.to_owned(),
+        unit => format!("{name} [{unit}]"),
+    }
 }
 
 /// Consecutive rows of the same branch.
@@ -151,33 +161,30 @@ pub fn branch_lines(
         }
     };
     let series = kinds.into_iter().map(part);
-    let mut series: Vec<PlotSeries> = series.filter(|series| !series.x.is_empty()).collect();
-    let mut known = Vec::new();
-    for one in series.iter_mut().filter(|_| legend) {
-        if !known.contains(&one.colour) {
-            let name = if one.colour == Some(ALIKE) {
-                "symmetric"
-            } else {
-                "asymmetric"
-            };
-            one.label = name.to_owned();
-            known.push(one.colour);
-        }
-    }
-    series
+    let series: Vec<PlotSeries> = series.filter(|series| !series.x.is_empty()).collect();
+    let occurs = |colour: &usize| series.iter().any(|one| one.colour == Some(*colour));
+    let names = [ALIKE, APART].into_iter().filter(|_| legend);
+    let names: Vec<PlotSeries> = names
+        .filter(occurs)
+        .map(|colour| colour_name(symmetry_name(colour), colour))
+        .collect();
+    [names, series].concat()
 }
 
-/// The legend of the strokes that occur: dashes are what is not stable, in whatever colour.
-pub fn named_strokes(series: &[PlotSeries]) -> Vec<(Stroke, String)> {
-    let named = [(Stroke::Solid, "stable"), (Stroke::Dashed, "unstable")];
-    let occurs = |stroke| series.iter().any(|one| one.stroke == stroke);
-    let broken = occurs(Stroke::Dashed);
-    let present = named
-        .into_iter()
-        .filter(|(stroke, _)| broken && occurs(*stroke));
-    present
-        .map(|(stroke, words)| (stroke, words.to_owned()))
-        .collect()
+/// What a colour says of how interfaces move.
+pub(super) fn symmetry_name(colour: usize) -> &'static str {
+    match colour {
+        ALIKE => Symmetry::Symmetric.name(),
+        _ => Symmetry::Asymmetric.name(),
+    }
+}
+
+/// The colour of a branch or a curve on which interfaces move so.
+pub(super) fn symmetry_colour(symmetry: Symmetry) -> usize {
+    match symmetry {
+        Symmetry::Symmetric => ALIKE,
+        Symmetry::Asymmetric => APART,
+    }
 }
 
 /// Between two points: stable if one is, and the other is, or is a bifurcation.
@@ -200,30 +207,41 @@ fn marks(
     distinct(special, named)
 }
 
-/// The points with their labels, each once.
-pub(super) fn distinct(points: impl Iterator<Item = (Label, f64, f64)>, named: bool) -> Vec<Mark> {
-    /// Points nearer than this, relatively, are drawn as one.
-    const SAME: f64 = 1e-6;
-    let near = |a: f64, b: f64| (a - b).abs() <= SAME * a.abs().max(b.abs());
-    let mut marks: Vec<(Label, Mark)> = Vec::new();
-    for (label, x, y) in points {
-        let known =
-            |(other, mark): &(Label, Mark)| *other == label && near(mark.x, x) && near(mark.y, y);
-        if !marks.iter().any(known) {
-            let text = if named { label.name() } else { "" };
-            marks.push((label, Mark::new(x, y, text)));
-        }
-    }
-    marks.into_iter().map(|(_, mark)| mark).collect()
-}
-
-/// Of many interfaces, how many slide slowly, at a middle rate and fast.
-fn share(row: &LocusRow) -> String {
+/// The name and the colour of a curve: of many interfaces by how many slide slowly, at a middle rate and fast.
+fn curve_name(row: &LocusRow) -> String {
     match row.share {
         Some(_) if row.symmetry == Symmetry::Symmetric => "all alike".to_owned(),
-        Some([slow, middle, fast]) => format!("({slow}, {middle}, {fast})"),
-        None => String::new(),
+        Some(share) => {
+            let each = share.into_iter().zip(["slow", "middle", "fast"]);
+            let each = each.filter(|(count, _)| *count > 0);
+            let each = each.map(|(count, name)| format!("{count} {name}"));
+            each.collect::<Vec<_>>().join(", ")
+        }
+        None => row.symmetry.name().to_owned(),
     }
+}
+
+/// The names of curves, those that occur, in the order of their colours; none where all curves are of one kind.
+fn curve_names(rows: &[LocusRow]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for curve in rows.chunk_by(|a, b| a.curve == b.curve) {
+        let name = curve_name(&curve[0]);
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    // The colours of symmetric and asymmetric ones are those of branches.
+    if rows.iter().all(|row| row.share.is_none()) {
+        match names.len() {
+            2 => {
+                names = [ALIKE, APART]
+                    .map(|one| symmetry_name(one).to_owned())
+                    .into()
+            }
+            _ => names.clear(),
+        }
+    }
+    names
 }
 
 /// K against V_H; where multipliers have an angle, that beside it.
@@ -231,36 +249,30 @@ pub fn curves(rows: &[LocusRow], special: &[Special], name: &str, units: &Units)
     let driving = |x| units.outward(Quantity::SlipRate, x);
     let stiffness = |x| units.outward(Quantity::Stiffness, x);
     let x = Axis::log(axis_label("V_H", Quantity::SlipRate, units));
+    let names = curve_names(rows);
+    let legend = names.iter().enumerate();
+    let legend: Vec<PlotSeries> = legend.map(|(i, name)| colour_name(name, i)).collect();
     let series = |y: &dyn Fn(&LocusRow) -> f64| -> Vec<PlotSeries> {
         let pieces = rows.chunk_by(|a, b| a.curve == b.curve);
-        let mut known: Vec<String> = Vec::new();
-        pieces
-            .map(|curve| {
-                let driving = curve.iter().map(|row| driving(row.driving.value));
-                let (driving, y) = (driving.collect(), curve.iter().map(y).collect());
-                let share = share(&curve[0]);
-                if share.is_empty() {
-                    return PlotSeries::new("", driving, y).colour(curve[0].curve);
-                }
-                // the curves of a share have one colour, and one name
-                match known.iter().position(|other| *other == share) {
-                    Some(colour) => PlotSeries::new("", driving, y).colour(colour),
-                    None => {
-                        known.push(share.clone());
-                        PlotSeries::new(share, driving, y).colour(known.len() - 1)
-                    }
-                }
-            })
-            .collect()
+        let line = |curve: &[LocusRow]| {
+            let driving = curve.iter().map(|row| driving(row.driving.value));
+            let (driving, y) = (driving.collect(), curve.iter().map(y).collect());
+            let name = curve_name(&curve[0]);
+            let colour = names.iter().position(|other| *other == name);
+            PlotSeries::new("", driving, y).colour(colour.unwrap_or(curve[0].curve))
+        };
+        pieces.map(line).collect()
     };
+    let labels: Vec<Label> = special.iter().map(|one| one.label).collect();
     let special = special.iter().filter(|one| one.label != Label::Ep);
     let points = special.map(|one| {
         let (v, k) = (one.driving.value, one.stiffness.value);
         (one.label, driving(v), stiffness(k))
     });
     let plane = Panel {
-        series: series(&|row| stiffness(row.stiffness.value)),
+        series: [legend, series(&|row| stiffness(row.stiffness.value))].concat(),
         marks: distinct(points, true),
+        keys: meanings(labels.into_iter()),
         ..Panel::new(
             name,
             x.clone(),

@@ -1,11 +1,12 @@
 //! Diagrams of branches, and of curves, in any parameters.
 
-use super::diagram::{axis_label, distinct, named_strokes, value};
+use super::diagram::{axis_label, symmetry_colour, symmetry_name, value};
+use super::labels::{colour_name, distinct, meanings, named_strokes};
 use crate::scene::{
     Free, GeneralBranchPlan, GeneralLocusPlan, GeneralRow, Quantity, RowKind, Subject, Units,
 };
 use twinslip::bifurcation::Label;
-use twinslip::equilibrium::Verdict;
+use twinslip::equilibrium::{Symmetry, Verdict};
 use twinslip_output::plot::{Axis, Drawing, Mark, Panel, PlotSeries, Stroke};
 
 /// The axis of a parameter: logarithmic where its range spans more than a factor of ten.
@@ -16,7 +17,7 @@ fn axis(free: &Free, units: &Units) -> Axis {
         free.range.0.min(free.range.1),
         free.range.0.max(free.range.1),
     );
-    let name = quantity_label(symbol(free.name), free.quantity, units);
+    let name = axis_label(symbol(free.name), free.quantity, units);
     if low > 0.0 && high > RATIO * low {
         Axis::log(name)
     } else {
@@ -38,7 +39,7 @@ fn value_axis(name: &str, quantity: Quantity, series: &[PlotSeries], units: &Uni
         quantity,
         Quantity::SlipRate | Quantity::State | Quantity::Time
     );
-    let name = quantity_label(name, quantity, units);
+    let name = axis_label(name, quantity, units);
     if low > 0.0 && (positive || high > RATIO * low) {
         Axis::log(name)
     } else {
@@ -55,10 +56,46 @@ fn symbol(name: &str) -> &str {
     }
 }
 
-/// What is drawn, and at which values of what every row tells though it is held.
+/// Whether it is interfaces: what has V_H and K.
+fn slides(subject: &dyn Subject) -> bool {
+    let parameters = subject.parameters();
+    let has = |wanted: &str| parameters.iter().any(|(name, _)| *name == wanted);
+    has("driving") && has("stiffness")
+}
+
+/// What rows tell, of interfaces by its symbol: `ψ_1` for state_1. The states of another system have the names that its file gives them.
+fn symbol_of(name: &str, subject: &dyn Subject) -> String {
+    if !slides(subject) {
+        return name.to_owned();
+    }
+    if name == "stress" {
+        return "stress τ".to_owned();
+    }
+    let symbols = [("log_state_", "ln ψ"), ("state_", "ψ"), ("slip_rate_", "v")];
+    let numbered = symbols.into_iter().find_map(|(prefix, symbol)| {
+        let number = name.strip_prefix(prefix)?;
+        number.parse::<usize>().ok().map(|n| (symbol, n))
+    });
+    match numbered {
+        Some((symbol, number)) => format!("{symbol}_{number}"),
+        None => symbol(name).to_owned(),
+    }
+}
+
+/// What is drawn, and at which values of what every row tells though it is held, or else of all parameters.
 fn title(what: &str, subject: &dyn Subject, free: &[Free]) -> String {
-    let told = subject.always_told().into_iter();
+    /// More of these would hide what is drawn.
+    const MOST: usize = 8;
+    let mut told = match subject.always_told() {
+        none if none.is_empty() => subject.parameters(),
+        told => told,
+    };
+    if slides(subject) {
+        told.retain(|(name, _)| ["driving", "stiffness"].contains(name));
+    }
+    let told = told.into_iter();
     let held = told.filter(|(name, _)| free.iter().all(|free| free.name != *name));
+    let held = held.take(MOST);
     let held = held.filter_map(|(name, quantity)| {
         let held = subject.value(name).ok()?;
         Some(value(symbol(name), quantity, held, subject.units()))
@@ -69,13 +106,35 @@ fn title(what: &str, subject: &dyn Subject, free: &[Free]) -> String {
     }
 }
 
-/// The label of an axis, without a unit where there is none.
-pub fn quantity_label(name: &str, quantity: Quantity, units: &Units) -> String {
-    match units.name(quantity) {
-        // A number without a unit.
-        "" | "1" => name.to_owned(),
-        _ => axis_label(name, quantity, units),
+/// The colour of a branch or curve: by how equal interfaces move on it, or one of its own.
+fn colour_of(branch: &[GeneralRow]) -> usize {
+    let symmetries = || branch.iter().filter_map(|row| row.symmetry);
+    if symmetries().any(|symmetry| symmetry == Symmetry::Asymmetric) {
+        return symmetry_colour(Symmetry::Asymmetric);
     }
+    match symmetries().next() {
+        Some(symmetry) => symmetry_colour(symmetry),
+        None => branch[0].number,
+    }
+}
+
+/// The legend of the colours, where there are several: `what` with a number where interfaces do not differ in how they move.
+fn colour_names(rows: &[GeneralRow], what: &str) -> Vec<PlotSeries> {
+    /// More branches than this have no names.
+    const MOST: usize = 8;
+    let branches = rows.chunk_by(|a, b| a.number == b.number);
+    let mut colours: Vec<usize> = branches.map(colour_of).collect();
+    colours.sort_unstable();
+    colours.dedup();
+    if !(2..=MOST).contains(&colours.len()) {
+        return Vec::new();
+    }
+    let symmetric = rows.iter().any(|row| row.symmetry.is_some());
+    let name = |colour: usize| match symmetric {
+        true => colour_name(symmetry_name(colour), colour),
+        false => colour_name(format!("{what} {}", colour + 1), colour),
+    };
+    colours.into_iter().map(name).collect()
 }
 
 /// A number of every row against the parameter, stable parts solid, all others dashed; branches in colours of their own.
@@ -101,7 +160,7 @@ pub fn general_lines(
                 left_out: branch.windows(2).map(|pair| !belongs(pair)).collect(),
                 ..PlotSeries::new("", xs.collect(), ys.collect())
                     .stroke(stroke)
-                    .colour(branch[0].number)
+                    .colour(colour_of(branch))
             });
         }
     }
@@ -127,6 +186,11 @@ fn marks(
     distinct(special, named)
 }
 
+/// The names that the points of a picture have.
+fn labels(rows: &[GeneralRow]) -> impl Iterator<Item = Label> {
+    rows.iter().filter_map(|row| row.label)
+}
+
 /// What there is to draw of rows: the names and places of numbers, of orbits the least and the largest together.
 fn drawn(subject: &dyn Subject, kind: RowKind) -> Vec<(String, Quantity, Vec<usize>)> {
     let numbers = subject.numbers(kind);
@@ -136,13 +200,13 @@ fn drawn(subject: &dyn Subject, kind: RowKind) -> Vec<(String, Quantity, Vec<usi
         let all = numbers.into_iter().enumerate();
         let all = all.filter(|(_, (name, _))| !range(name));
         return all
-            .map(|(i, (name, quantity))| (name, quantity, vec![i]))
+            .map(|(i, (name, quantity))| (symbol_of(&name, subject), quantity, vec![i]))
             .collect();
     }
     let mut pairs = Vec::new();
     for (i, (name, quantity)) in numbers.iter().enumerate() {
         if let Some(name) = name.strip_suffix("_min") {
-            let title = format!("least and largest {name}");
+            let title = format!("least and largest {}", symbol_of(name, subject));
             pairs.push((title, *quantity, vec![i, i + 1]));
         }
     }
@@ -185,7 +249,15 @@ pub fn general_branches(
             } else {
                 Vec::new()
             },
-            series,
+            keys: if number == 0 {
+                meanings(labels(rows))
+            } else {
+                Vec::new()
+            },
+            series: match number {
+                0 => [colour_names(rows, "branch"), series].concat(),
+                _ => series,
+            },
             marks: points,
             ..Panel::new(first, axis(&plan.free, units), vertical)
         });
@@ -230,13 +302,14 @@ pub fn general_curves(
         curves
             .map(|curve| {
                 let (xs, ys) = (curve.iter().map(&x), curve.iter().map(y));
-                PlotSeries::new("", xs.collect(), ys.collect()).colour(curve[0].number)
+                PlotSeries::new("", xs.collect(), ys.collect()).colour(colour_of(curve))
             })
             .collect()
     };
     let plane = Panel {
-        series: series(&y),
+        series: [colour_names(rows, "curve"), series(&y)].concat(),
         marks: marks(special, &x, &y, true),
+        keys: meanings(labels(special)),
         ..Panel::new(
             title(plan.choice.title, plan.subject, &plan.free),
             axis(&plan.free[0], units),

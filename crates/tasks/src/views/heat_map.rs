@@ -1,6 +1,7 @@
 //! The states of a system of many variables in time, as colours: one row for each.
 
 use super::fit::in_digits;
+use super::text::with_parameters;
 use crate::scene::TextPlan;
 use twinslip_output::RowList;
 use twinslip_output::plot::{Axis, Cells, Panel, Shade, Swatch};
@@ -50,7 +51,7 @@ pub fn states_in_time(plan: &TextPlan, rows: &RowList) -> Panel {
     Panel {
         cells: Some(cells),
         ..Panel::new(
-            plan.model.name().to_owned(),
+            with_parameters(&plan.model),
             Axis::linear("time t"),
             Axis::linear("number of the state").within(number(0), number(states.len())),
         )

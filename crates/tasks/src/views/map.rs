@@ -1,5 +1,6 @@
 //! Pictures of a return map.
 
+use super::diagram::{axis_label, value};
 use crate::scene::{Quantity, SectionPlan};
 use crate::views;
 use twinslip_output::RowList;
@@ -29,12 +30,10 @@ pub fn return_map(plan: &SectionPlan, rows: &RowList) -> Panel {
     } else {
         "v"
     };
-    let rate = units.short_name(Quantity::SlipRate);
-    let stress = units.outward(Quantity::Stress, plan.stress);
+    let rate = |name: String| axis_label(&name, Quantity::SlipRate, units);
     let title = format!(
-        "return map at τ = {} {}, {}",
-        twinslip_output::seven_digits(stress),
-        units.short_name(Quantity::Stress),
+        "return map at {}, {}",
+        value("τ", Quantity::Stress, plan.stress, units),
         views::parameters(plan.loading.driving, plan.loading.stiffness, units)
     );
     Panel {
@@ -44,8 +43,8 @@ pub fn return_map(plan: &SectionPlan, rows: &RowList) -> Panel {
         ],
         ..Panel::new(
             title,
-            axis(format!("{sum} at return n [{rate}]")),
-            axis(format!("{sum} at return n + 1 [{rate}]")),
+            axis(rate(format!("{sum} at return n"))),
+            axis(rate(format!("{sum} at return n + 1"))),
         )
     }
 }

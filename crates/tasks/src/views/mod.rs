@@ -12,7 +12,10 @@ mod equilibria;
 mod fit;
 mod general;
 mod heat_map;
+mod labels;
+mod last_part;
 mod law;
+mod law_picture;
 mod listing;
 mod many;
 mod many_equilibria;
@@ -20,20 +23,23 @@ mod map;
 mod orbit;
 mod points;
 mod run;
+mod steady_picture;
 pub mod sweep;
 mod text;
 
 pub use bifurcation::{branch_columns, locus_columns, special_columns};
 pub use catalogue::{many_event_columns, participation_columns, picture_of_events};
 pub use clusters::{cluster_columns, staircase};
-pub use diagram::{axis_label, branch_lines, branches, curves, named_strokes, parameters};
+pub use diagram::{axis_label, branch_lines, branches, curves, parameters};
 pub use equilibria::equilibria_columns;
 pub use fit::{
     FitRow, digits_of, fit_columns, in_digits, parameter_label, picture_of_fit,
     picture_of_parameters, scale_name,
 };
-pub use general::{general_branches, general_curves, general_lines, quantity_label};
+pub use general::{general_branches, general_curves, general_lines};
+pub use labels::named_strokes;
 pub use law::law_columns;
+pub use law_picture::picture_of_law;
 pub use listing::{Listed, Listing};
 pub use many::many_run;
 pub use many_equilibria::steady_interface_columns;
@@ -41,12 +47,16 @@ pub use map::{return_map, states_at_returns};
 pub use orbit::orbit_columns;
 pub use points::{REGIMES, outcome, sweep_columns, sweep_row};
 pub use run::{event_columns, panels_in_time, phase_plane, picture_of_run};
+pub use steady_picture::{
+    picture_of_equilibria, picture_of_many_equilibrium, picture_of_text_equilibria,
+};
 pub use sweep::{
     Basins, GridSide, PointOutcome, basin_map, basins_of_states, parameter_map, regime_line,
     regime_map,
 };
 pub use text::{
     text_equilibria_columns, text_law_columns, text_orbit_columns, text_return_map, text_run,
+    with_parameters,
 };
 
 /// The names as written, error budgets in columns of their own but in tables.

@@ -1,10 +1,11 @@
 //! Pictures of a run in time.
 
-use super::diagram::value;
+use super::diagram::{axis_label, number, value};
+use super::last_part::with_last_part;
 use crate::scene::{CellValue, Change, Column, Dimension, Plan, Quantity, SlipEvent};
 use crate::views;
 use twinslip_output::RowList;
-use twinslip_output::plot::{Axis, Drawing, Mark, Panel, PlotSeries, Stroke, Symbol};
+use twinslip_output::plot::{Axis, Drawing, Key, Mark, Panel, PlotSeries, Stroke, Symbol};
 
 /// The columns of stick-slip events; a single interface has no second slip, and neither it nor equal ones have a leader.
 pub fn event_columns(interfaces: usize) -> Vec<Column<SlipEvent>> {
@@ -35,20 +36,20 @@ pub fn event_columns(interfaces: usize) -> Vec<Column<SlipEvent>> {
     ]
 }
 
-/// A run in time, and its phase plane beside it.
+/// A run in time, and its phase plane beside it; below it where the last part of a long run is beside it.
 pub fn picture_of_run(plan: &Plan, rows: &RowList) -> Drawing {
-    let time = panels_in_time(plan, rows);
-    Drawing::columns(vec![time, vec![phase_plane(plan, rows)]])
+    let column = |name: &str| rows.column(name).unwrap_or_default();
+    with_last_part(
+        panels_in_time(plan, rows),
+        vec![vec![phase_plane(plan, rows)]],
+        (&column("time"), &column("stress")),
+    )
 }
 
 /// Stress, states and slip rates against time, from points in the columns [`crate::scene::Plan::pictured`].
 pub fn panels_in_time(plan: &Plan, rows: &RowList) -> Vec<Panel> {
     let units = &plan.system.units;
-    let time = Axis::linear(format!("time t [{}]", units.short_name(Quantity::Time)));
-    let state_unit = match units.short_name(Quantity::State).as_str() {
-        "1" => String::new(),
-        unit => format!(" [{unit}]"),
-    };
+    let time = Axis::linear(axis_label("time t", Quantity::Time, units));
     let column = |name: &str| column(plan, rows, name);
     let of_each = |name: &str, field: &str| {
         each(plan, rows, name, &|i| {
@@ -72,6 +73,7 @@ pub fn panels_in_time(plan: &Plan, rows: &RowList) -> Vec<Panel> {
     let over_time = PlotSeries::new("", column("time"), column("stress"));
     vec![
         Panel {
+            keys: meaning_of_changes(plan),
             marks: changes(plan, rows),
             ..panel(
                 &format!("stress, {parameters}"),
@@ -81,17 +83,38 @@ pub fn panels_in_time(plan: &Plan, rows: &RowList) -> Vec<Panel> {
         },
         panel(
             "state",
-            Axis::log(format!("state ψ{state_unit}")),
+            Axis::log(axis_label("state ψ", Quantity::State, units)),
             of_each("ψ", "state"),
         ),
         panel("slip rate", rate_axis(plan), rates),
     ]
 }
 
+/// More changes of V_H than this have no names.
+const NAMED: usize = 12;
+
+/// What the points at changes of V_H mean.
+fn meaning_of_changes(plan: &Plan) -> Vec<Key> {
+    let changes = plan.program.as_ref().map_or(0, |all| all.changes.len());
+    let label = match changes {
+        0 => return Vec::new(),
+        1..=NAMED => "V_H from there on",
+        _ => "V_H changes",
+    };
+    let label = match plan.system.units.si() {
+        true => label.to_owned(),
+        false => axis_label(label, Quantity::SlipRate, &plan.system.units),
+    };
+    vec![Key {
+        symbol: Symbol::Dot,
+        filled: true,
+        colour: None,
+        label,
+    }]
+}
+
 /// Where V_H changes: points on the curve of the stress, with V_H from then on where that is legible.
 fn changes(plan: &Plan, rows: &RowList) -> Vec<Mark> {
-    /// More changes than this have no names.
-    const NAMED: usize = 12;
     let Some(program) = &plan.program else {
         return Vec::new();
     };
@@ -102,7 +125,7 @@ fn changes(plan: &Plan, rows: &RowList) -> Vec<Mark> {
         // The picture has a point at the ends of all stretches, and none beyond where the run has come to.
         let at = time.iter().position(|&t| t >= change.time)?;
         let driving = units.inward(Quantity::SlipRate, change.driving);
-        let driving = value("V_H", Quantity::SlipRate, driving, units);
+        let driving = number(Quantity::SlipRate, driving, units);
         let name = match (named, change.until) {
             (false, _) => String::new(),
             (true, None) => driving,
@@ -144,13 +167,15 @@ fn column(plan: &Plan, rows: &RowList, name: &str) -> Vec<f64> {
 }
 
 fn stress_axis(plan: &Plan) -> Axis {
-    let unit = plan.system.units.short_name(Quantity::Stress);
-    Axis::linear(format!("stress τ [{unit}]"))
+    Axis::linear(axis_label("stress τ", Quantity::Stress, &plan.system.units))
 }
 
 fn rate_axis(plan: &Plan) -> Axis {
-    let unit = plan.system.units.short_name(Quantity::SlipRate);
-    Axis::log(format!("slip rate v [{unit}]"))
+    Axis::log(axis_label(
+        "slip rate v",
+        Quantity::SlipRate,
+        &plan.system.units,
+    ))
 }
 
 /// Colours of the faster interface and of the slower one.

@@ -1,10 +1,13 @@
 //! What systems of one's own show: columns and pictures.
 
+use super::diagram::value;
 use super::heat_map::{MOST_PANELS, states_in_time};
+use super::last_part::with_last_part;
 use super::law::law_columns;
 use super::orbit::multiplier_columns;
 use crate::scene::{
-    Column, Quantity, TextEquilibrium, TextLawPoint, TextModel, TextPlan, TextSectionPlan, TextSlab,
+    Column, Described, Quantity, TextEquilibrium, TextLawPoint, TextModel, TextPlan,
+    TextSectionPlan, TextSlab,
 };
 use Quantity::Number;
 use twinslip::orbit::Orbit;
@@ -110,18 +113,33 @@ pub fn text_orbit_columns(model: &TextModel) -> Vec<Column<Orbit>> {
     columns
 }
 
+/// The name of a system with the values of its parameters.
+pub fn with_parameters(model: &TextModel) -> String {
+    /// More of these would hide what is drawn.
+    const MOST: usize = 8;
+    let system = &model.system;
+    let all = system.parameter_names().iter().zip(system.parameters());
+    let each = all
+        .take(MOST)
+        .map(|(name, x)| value(name, Number, *x, model.units()));
+    match each.collect::<Vec<_>>().join(", ") {
+        none if none.is_empty() => model.name().to_owned(),
+        values => format!("{}: {values}", model.name()),
+    }
+}
+
 /// The states in time, each in a panel or, of many, all in one, and beside them the first two against each other.
 pub fn text_run(plan: &TextPlan, rows: &RowList) -> Drawing {
     let column = |name: &str| rows.column(name).unwrap_or_default();
     if let Some(slab) = &plan.model.slab {
-        return sliding(slab, rows);
+        return sliding(&plan.model, slab, rows);
     }
     let states = plan.model.system.states();
     let in_time = states.iter().enumerate().map(|(i, name)| Panel {
         series: vec![PlotSeries::new("", column("time"), column(name))],
         ..Panel::new(
             if i == 0 {
-                plan.model.name().to_owned()
+                with_parameters(&plan.model)
             } else {
                 String::new()
             },
@@ -133,18 +151,19 @@ pub fn text_run(plan: &TextPlan, rows: &RowList) -> Drawing {
         true => vec![states_in_time(plan, rows)],
         false => in_time.collect(),
     };
-    let mut columns = vec![in_time];
-    if let [first, second, ..] = states {
-        columns.push(vec![Panel {
+    let plane = match states {
+        [first, second, ..] => vec![vec![Panel {
             series: vec![PlotSeries::new("", column(first), column(second))],
             ..Panel::new("phase plane", Axis::linear(*first), Axis::linear(*second))
-        }]);
-    }
-    Drawing::columns(columns)
+        }]],
+        _ => Vec::new(),
+    };
+    let first = states.first().map_or(Vec::new(), |name| column(name));
+    with_last_part(in_time, plane, (&column("time"), &first))
 }
 
 /// Stress, states and slip rates of interfaces in time, and beside them the stress against the slip rates.
-fn sliding(slab: &TextSlab, rows: &RowList) -> Drawing {
+fn sliding(model: &TextModel, slab: &TextSlab, rows: &RowList) -> Drawing {
     let column = |name: &str| rows.column(name).unwrap_or_default();
     let each = |symbol: &str, x: Option<&str>, y: Option<&str>| -> Vec<PlotSeries> {
         let one = |i: usize| {
@@ -155,7 +174,7 @@ fn sliding(slab: &TextSlab, rows: &RowList) -> Drawing {
             let name = if slab.clusters().len() == 1 {
                 String::new()
             } else {
-                format!("{symbol} {i}")
+                format!("{symbol}_{i}")
             };
             PlotSeries::new(name, of(x, "time"), of(y, "stress"))
         };
@@ -172,8 +191,9 @@ fn sliding(slab: &TextSlab, rows: &RowList) -> Drawing {
             .map(|driving| PlotSeries::new("V_H", column("time"), driving).stroke(Stroke::Dotted)),
     );
     let stress = vec![PlotSeries::new("", column("time"), column("stress"))];
+    let title = with_parameters(model);
     let in_time = vec![
-        panel(slab.law_name(), time(), Axis::linear("stress τ"), stress),
+        panel(&title, time(), Axis::linear("stress τ"), stress),
         panel(
             "state",
             time(),
@@ -188,7 +208,8 @@ fn sliding(slab: &TextSlab, rows: &RowList) -> Drawing {
         Axis::linear("stress τ"),
         each("v", Some("slip_rate"), None),
     );
-    Drawing::columns(vec![in_time, vec![plane]])
+    let in_time_of = (&column("time")[..], &column("stress")[..]);
+    with_last_part(in_time, vec![vec![plane]], in_time_of)
 }
 
 /// A state at each return against itself at the next, and where there is one more the states at the returns.
@@ -204,10 +225,9 @@ pub fn text_return_map(plan: &TextSectionPlan, rows: &RowList) -> Drawing {
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let title = format!(
-        "return map at {} = {}, {}",
-        names[plan.state],
-        twinslip_output::seven_digits(plan.value),
-        plan.model.name()
+        "return map at {}, {}",
+        value(names[plan.state], Number, plan.value, plan.model.units()),
+        with_parameters(&plan.model)
     );
     let map = Panel {
         series: vec![

@@ -83,6 +83,7 @@ impl EnsemblePlan {
         }
         match &mut command {
             Command::Law(options) => options.plot = None,
+            Command::Equilibria(options) => options.plot = None,
             Command::Branch(options) => {
                 options.plot = None;
                 options.continuation.crosscheck = None;

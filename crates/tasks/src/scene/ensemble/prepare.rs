@@ -62,6 +62,7 @@ impl Command {
     pub fn plot(&self) -> Option<&std::path::Path> {
         match self {
             Command::Law(options) => options.plot.as_deref(),
+            Command::Equilibria(options) => options.plot.as_deref(),
             Command::Branch(options) => options.plot.as_deref(),
             Command::Locus(options) => options.plot.as_deref(),
             Command::Sweep(options) => options.plot.as_deref(),

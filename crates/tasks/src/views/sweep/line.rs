@@ -4,7 +4,7 @@ use super::plane::{LargestExponents, legend, told};
 use super::tints::RegimeKind;
 use super::{GridSide, PointOutcome};
 use crate::scene::{Quantity, Units};
-use crate::views::quantity_label;
+use crate::views::axis_label;
 use twinslip_output::plot::{Axis, Cells, Drawing, Panel, PlotSeries};
 
 /// The part of the frame that the strip of regimes has, and what is left free at both ends of the values.
@@ -60,7 +60,7 @@ pub fn regime_line(
     if starts > 1 {
         title += &format!(", {starts} starts each");
     }
-    let vertical = quantity_label(&format!("least and largest {name}"), quantity, units);
+    let vertical = axis_label(&format!("least and largest {name}"), quantity, units);
     let first = Panel {
         cells: Some(strip),
         series: range.into(),
@@ -78,7 +78,7 @@ pub fn regime_line(
         return Drawing::columns(vec![vec![first]]);
     }
     let (shortest, longest) = ends(&period.y);
-    let vertical = quantity_label("period", Quantity::Time, units);
+    let vertical = axis_label("period", Quantity::Time, units);
     let vertical = match shortest > 0.0 && longest > RATIO * shortest {
         true => Axis::log(vertical),
         false => Axis::linear(vertical),

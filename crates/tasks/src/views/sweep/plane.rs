@@ -3,7 +3,7 @@
 use super::tints::{LIGHTEST, RegimeKind};
 use super::{GridSide, PointOutcome};
 use crate::scene::{Quantity, Units};
-use crate::views::{axis_label, quantity_label};
+use crate::views::axis_label;
 use twinslip::bifurcation::LocusRow;
 use twinslip_output::plot::{Axis, Cells, Drawing, Panel, PlotSeries, Shade, Stroke, Swatch};
 
@@ -163,7 +163,7 @@ pub(super) fn legend(
             let range = format!("chaotic, exponent {} to {}", rate(lo), rate(hi));
             Swatch {
                 shades: (0..STEPS).rev().map(|i| lighter(i as f64)).collect(),
-                label: quantity_label(&range, Quantity::Growth, units),
+                label: axis_label(&range, Quantity::Growth, units),
             }
         }
         _ => Swatch {

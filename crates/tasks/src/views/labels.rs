@@ -1,0 +1,114 @@
+//! Special points on pictures: their marks, and the legend that says what their names mean.
+
+use twinslip::bifurcation::Label;
+use twinslip_output::plot::{Key, Mark, PlotSeries, Stroke, Symbol};
+
+/// The points with their labels, each once. Values that were asked for are small points, which have names only where they are few.
+pub(super) fn distinct(points: impl Iterator<Item = (Label, f64, f64)>, named: bool) -> Vec<Mark> {
+    /// Points nearer than this, relatively, are drawn as one.
+    const SAME: f64 = 1e-6;
+    /// More values than these have no names.
+    const FEW: usize = 3;
+    let near = |a: f64, b: f64| (a - b).abs() <= SAME * a.abs().max(b.abs());
+    let mut marks: Vec<(Label, Mark)> = Vec::new();
+    for (label, x, y) in points {
+        let known =
+            |(other, mark): &(Label, Mark)| *other == label && near(mark.x, x) && near(mark.y, y);
+        if !marks.iter().any(known) {
+            let text = if named { label.name() } else { "" };
+            marks.push((label, Mark::new(x, y, text).symbol(symbol(label))));
+        }
+    }
+    let values = marks.iter().filter(|(label, _)| *label == Label::Uz);
+    let many = values.count() > FEW;
+    let nameless = |(label, mark): (Label, Mark)| match label {
+        Label::Uz if many => Mark {
+            label: String::new(),
+            ..mark
+        },
+        _ => mark,
+    };
+    marks.into_iter().map(nameless).collect()
+}
+
+fn symbol(label: Label) -> Symbol {
+    match label {
+        Label::Uz => Symbol::Dot,
+        _ => Symbol::Circle,
+    }
+}
+
+/// What the names of these points mean, for the legend: those of one symbol together.
+pub(super) fn meanings(labels: impl Iterator<Item = Label>) -> Vec<Key> {
+    let present: Vec<Label> = labels.collect();
+    let key = |shape: Symbol| {
+        let named = Label::ALL.into_iter().filter(|label| {
+            *label != Label::Ep && present.contains(label) && symbol(*label) == shape
+        });
+        let words = named.map(|label| format!("{}: {}", label.name(), label.meaning()));
+        let words = words.collect::<Vec<_>>().join(", ");
+        (!words.is_empty()).then_some(Key {
+            symbol: shape,
+            filled: true,
+            colour: None,
+            label: words,
+        })
+    };
+    [Symbol::Circle, Symbol::Dot]
+        .into_iter()
+        .filter_map(key)
+        .collect()
+}
+
+/// An entry of the legend for all curves of a colour, whatever their strokes: a curve without points.
+pub(super) fn colour_name(name: impl Into<String>, colour: usize) -> PlotSeries {
+    PlotSeries::new(name, Vec::new(), Vec::new()).colour(colour)
+}
+
+/// The legend of the strokes that occur: dashes are what is not stable, in whatever colour.
+pub fn named_strokes(series: &[PlotSeries]) -> Vec<(Stroke, String)> {
+    let named = [(Stroke::Solid, "stable"), (Stroke::Dashed, "unstable")];
+    let occurs = |stroke| {
+        let mut drawn = series.iter().filter(|one| !one.x.is_empty());
+        drawn.any(|one| one.stroke == stroke)
+    };
+    let broken = occurs(Stroke::Dashed);
+    let present = named
+        .into_iter()
+        .filter(|(stroke, _)| broken && occurs(*stroke));
+    present
+        .map(|(stroke, words)| (stroke, words.to_owned()))
+        .collect()
+}
+
+#[cfg(test)]
+mod test {
+    use super::*;
+
+    fn values(many: usize) -> Vec<Mark> {
+        let values = (0..many).map(|i| (Label::Uz, i as f64, 1.0));
+        distinct(values.chain([(Label::Hb, -1.0, 1.0)]), true)
+    }
+
+    #[test]
+    fn many_values_that_were_asked_for_have_no_names() {
+        let named = |marks: &[Mark]| marks.iter().filter(|mark| mark.label == "UZ").count();
+        assert_eq!(named(&values(3)), 3);
+        let many = values(25);
+        assert_eq!((many.len(), named(&many)), (26, 0));
+        assert!(many[..25].iter().all(|mark| mark.symbol == Symbol::Dot));
+        assert_eq!(
+            (many[25].label.as_str(), many[25].symbol),
+            ("HB", Symbol::Circle)
+        );
+    }
+
+    #[test]
+    fn the_legend_says_what_names_mean_once_and_nothing_of_ends() {
+        let labels = [Label::Hb, Label::Ep, Label::Bp, Label::Hb, Label::Uz];
+        let keys = meanings(labels.into_iter());
+        let words: Vec<&str> = keys.iter().map(|key| key.label.as_str()).collect();
+        assert_eq!(words, ["BP: pitchfork, HB: Hopf", "UZ: value asked for"]);
+        assert!(meanings([Label::Ep].into_iter()).is_empty());
+    }
+}
