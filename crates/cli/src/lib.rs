@@ -186,9 +186,21 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         let _ = write!(std::io::stdout(), "{help}");
         return ExitCode::SUCCESS;
     }
-    let implied = scene::implied(&words).map(OsString::from);
+    let plain = match scene::plain(&words) {
+        Ok(plain) => {
+            let quiet = words.iter().any(|word| word == "-q" || word == "--quiet");
+            if let Some(warning) = plain.warning().filter(|_| !quiet) {
+                say(format_args!("warning: {warning}"));
+            }
+            plain.applied(&arguments)
+        }
+        Err(sentence) => {
+            say(format_args!("error: {}", shortened(sentence)));
+            return ExitCode::from(WRONG_INPUT);
+        }
+    };
     let parsed = program
-        .try_get_matches_from(arguments.iter().cloned().chain(implied))
+        .try_get_matches_from(plain)
         .and_then(|matches| CommandLine::from_arg_matches(&matches));
     let line = match parsed {
         Ok(line) => line,

@@ -58,13 +58,13 @@ mod system;
 mod text;
 mod unequal;
 mod units;
+mod words;
 
 pub use branch::{BranchKind, BranchParameter, BranchPlan};
 pub use column::{CellValue, Column};
 pub use command::Command;
 pub use command::sentence;
 pub use continuation::{BranchOptions, ContinuationOptions, LocusOptions, SearchOptions};
-pub use ensemble::implied;
 pub use ensemble::{EnsembleFile, EnsembleOptions, EnsemblePlan, FittedParameter, FrictionFit};
 pub use equilibria::{AnyStability, ClassifiedEquilibria, ClassifiedEquilibrium, EquilibriaPlan};
 pub use event::SlipEvent;
@@ -109,3 +109,4 @@ pub use text::{
     text_columns, text_section_columns,
 };
 pub use units::{Quantity, TimeUnit, Units};
+pub use words::{Plain, plain};

@@ -8,7 +8,7 @@ mod prepare;
 
 pub use file::EnsembleFile;
 pub use fit::{FittedParameter, FrictionFit};
-pub use implied::implied;
+pub(super) use implied::implied;
 pub use plan::EnsemblePlan;
 
 /// What a user can set about the parameters of a fit.
