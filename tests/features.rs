@@ -6,6 +6,7 @@ mod common;
 mod drawn;
 
 mod branches;
+mod cli_faults;
 mod cli_given;
 mod cli_input;
 mod cli_runs;

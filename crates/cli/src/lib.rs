@@ -8,6 +8,7 @@ mod continuation;
 pub(crate) mod ensemble;
 mod equilibria;
 mod examples;
+mod fault;
 mod fit;
 mod general;
 mod integrate;
@@ -332,6 +333,9 @@ fn shortened(text: String) -> String {
 fn compute(command: &scene::Command, call: &Call) -> Result<Ending, Error> {
     if let Some(plan) = scene::EnsemblePlan::new(command)? {
         return ensemble::run(&plan, command, call);
+    }
+    if let Some(warning) = command.warning() {
+        call.say(format_args!("warning: {warning}"));
     }
     let ended = match command {
         scene::Command::Law(options) => law::run(options, call),

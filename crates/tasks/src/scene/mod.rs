@@ -53,11 +53,13 @@ mod set;
 mod shipped;
 mod slip;
 mod stretch;
+mod summary;
 mod sweep;
 mod system;
 mod text;
 mod unequal;
 mod units;
+mod warnings;
 mod words;
 
 pub use branch::{BranchKind, BranchParameter, BranchPlan};
@@ -100,6 +102,7 @@ pub use section::{
     section_columns,
 };
 pub use shipped::{about, shipped, shipped_names};
+pub use summary::{Criticality, FaultSummary, Spread};
 pub use sweep::{BasinStates, Moving, Shard, SweepLayout, SweepOptions, SweepPlan, Swept};
 pub use system::{Described, System};
 pub use text::{

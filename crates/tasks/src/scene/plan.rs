@@ -18,8 +18,8 @@ pub(super) const USUAL_START: &str = "near-symmetric";
 /// The asymmetry of `--start near-symmetric` where none is given.
 pub(super) const NEAR_SYMMETRIC: f64 = 0.01;
 /// Total slip rate over V_H from which on an excursion counts as a stick-slip event.
-const EVENT_THRESHOLD: f64 = 2.0;
-/// More rows than this are a slip of the pen.
+pub(super) const EVENT_THRESHOLD: f64 = 2.0;
+/// Upper limit on the number of rows, to catch typing errors.
 const MAX_ROWS: f64 = 1e9;
 /// tau, and ln psi of both interfaces: twice the same where there is one, or where both move alike.
 pub type Point = (f64, [f64; 2]);
