@@ -142,6 +142,11 @@ fn progress_in_a_pipe_is_lines() {
     );
     assert_eq!(lines(branch, "600"), Vec::<String>::new());
     assert_eq!(lines(&format!("{branch} -q"), "0.02"), Vec::<String>::new());
+    // Commands without a fraction to report.
+    let place = crate::command::folder("progress").join("paper");
+    let reproduce = format!("reproduce --only fig05 --out {}", place.display());
+    let said = lines(&reproduce, "0.02");
+    assert!(said.iter().any(|line| line.contains(" of ")), "{said:?}");
     let run = "integrate --driving 0.12 --stiffness 0.14 --until 1e6 --columns time -o -";
     let said = lines(run, "0.01");
     assert!(said.iter().any(|line| line.contains(" %, ")), "{said:?}");

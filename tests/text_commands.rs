@@ -129,7 +129,7 @@ fn what_makes_no_sense_with_a_system_is_refused() {
     }
     refused_in_one_line(
         "integrate --system lorenz --until 1 --events",
-        "which need interfaces",
+        "of interfaces with a built-in law",
     );
     refused_in_one_line("law --system lorenz", "this command is of interfaces");
     refused_in_one_line(

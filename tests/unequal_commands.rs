@@ -426,11 +426,11 @@ fn what_is_wrong_is_refused_in_one_sentence() {
     let orbit = "orbit --driving 10 --stiffness 0.14";
     refused_in_one_line(
         &format!("{orbit} --symmetry symmetric {differ}"),
-        "never move alike",
+        "unequal interfaces have no symmetric orbits",
     );
     refused_in_one_line(
         &format!("{orbit} --start hopf {differ}"),
-        "for equal interfaces",
+        "only to equal interfaces",
     );
 }
 

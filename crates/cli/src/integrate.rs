@@ -77,7 +77,7 @@ pub fn run(options: &IntegrateOptions, call: &Call) -> Result<Ending> {
     }
     if options.checkpoint.is_some() {
         return Err(Error::Input(
-            "`checkpoint` is of runs of many interfaces: from 8 on that move on their own, or with `draw`".into(),
+            "`checkpoint` works only for runs of many interfaces: 8 or more without clusters, or with `draw`".into(),
         ));
     }
     // A program may say itself which V_H is the first.
@@ -268,7 +268,7 @@ fn place(output: &OutputOptions, name: &str, asked: &Option<PathBuf>) -> Result<
         (Format::Json, None, _) | (Format::Table, None, None) => Ok(None),
         (_, Some(named), _) => Ok(Some((named, Format::Csv))),
         (Format::Csv, None, None) => Err(Error::Input(format!(
-            "--{name} needs a file of its own where rows go to standard output as CSV: --{name} FILE, or -o FILE, --format json or --format table"
+            "--{name} needs a separate file when rows go to standard output as CSV: --{name} FILE, or -o FILE, --format json or --format table"
         ))),
         (_, None, Some(file)) => {
             let mut beside = file.file_stem().unwrap_or_default().to_owned();

@@ -17,11 +17,11 @@ pub const EXAMPLE: &str =
 /// `run`: a scene, and the options that replace those of the scene.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct RunOptions {
-    /// The scene: the name of one that is built in, or a file: TOML with command = "integrate" (or another command) and that
+    /// The scene: the name of a built-in one, or a file: TOML with command = "integrate" (or another command) and that
     /// command's options by their own names
     #[arg(value_name = "SCENE", required_unless_present = "list")]
     scene: Option<PathBuf>,
-    /// Options of the scene's command, which take the place of the scene's own: --set K=0.1, --until 500, --rtol 1e-10
+    /// Options of the scene's command, which replace those of the scene: --set K=0.1, --until 500, --rtol 1e-10
     #[arg(
         value_name = "OPTIONS",
         trailing_var_arg = true,

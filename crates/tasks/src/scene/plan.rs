@@ -176,7 +176,7 @@ impl Plan {
         ];
         if let Some((name, _)) = of_many.into_iter().find(|(_, asked)| *asked) {
             return Err(Error::Input(format!(
-                "`{name}` is of the events of three interfaces and more; of one or two `events` has all"
+                "`{name}` is for the events of three or more interfaces; for one or two `events` has everything"
             )));
         }
         let text = options.start.as_deref().unwrap_or(USUAL_START);
@@ -274,7 +274,7 @@ impl Plan {
 pub(super) fn until(options: &IntegrateOptions) -> Result<f64> {
     let until = options
         .until
-        .ok_or_else(|| Error::Input("`until` T is missing: when shall the run end?".into()))?;
+        .ok_or_else(|| Error::Input("`until` T is missing: the end time of the run".into()))?;
     positive("until", until)
 }
 
