@@ -366,7 +366,7 @@ fn what_cannot_vary_is_refused_in_one_sentence() {
         ),
         (
             "--system lorenz --grid r=1:2:2 --driving 0.1",
-            "are of interfaces",
+            "belong to interfaces",
         ),
         (
             "--system lorenz --grid r=1:2:2 --surface q",

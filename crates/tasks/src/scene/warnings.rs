@@ -14,6 +14,8 @@ impl Command {
     /// numbers in SI are those of a fault. None of a command that is quiet.
     pub fn warning(&self) -> Option<String> {
         let slab = self.slab().filter(|_| !self.output().quiet)?;
+        // Of options that make no system there is an error to come, and no warning.
+        self.units()?;
         let driving = match self {
             Command::Law(options) => options.model.driving,
             Command::Integrate(options) => options.model.driving,
@@ -42,7 +44,12 @@ impl SlabOptions {
         let mut faults = Vec::new();
         for name in ["slip_length", "normal_stress", "damping"] {
             let is_default = name == "slip_length" && self.slip_length == Some(SLIP_LENGTH);
-            if given(name)? && !is_default {
+            // The rock may stand for the damping.
+            let name = match name {
+                "damping" if self.shear_modulus.is_some() => "shear_modulus",
+                name => name,
+            };
+            if (name == "shear_modulus" || given(name)?) && !is_default {
                 faults.push(name);
             }
         }

@@ -242,36 +242,24 @@ impl<'a> Made<'a> {
 
     /// Names and values of options.
     fn options(&mut self, shape: Shape, value: &str) -> Result<Vec<(String, String)>, String> {
-        let same = |value: String| vec![(self.flag.to_owned(), value)];
-        Ok(match shape {
-            Shape::Law => same(
-                value
-                    .split(',')
-                    .map(symbols::law)
-                    .collect::<Vec<_>>()
-                    .join(","),
-            ),
+        let seconds = self.context.seconds;
+        let value = match shape {
             Shape::Along => return self.along(value),
             Shape::In => return self.within(value),
             Shape::Pairs => return self.pairs(value),
-            Shape::Numbers(kind) => {
-                let value = self.numbers(value, kind, 1.0)?;
-                vec![(self.flag.to_owned(), value)]
+            Shape::Law => {
+                let names: Vec<&str> = value.split(',').map(symbols::law).collect();
+                names.join(",")
             }
-            Shape::Times => {
-                let value = self.numbers(value, Kind::Time, self.context.seconds)?;
-                vec![(self.flag.to_owned(), value)]
-            }
-            Shape::Program => {
-                let value = self.program(value)?;
-                vec![(self.flag.to_owned(), value)]
-            }
+            Shape::Numbers(kind) => self.numbers(value, kind, 1.0)?,
+            Shape::Times => self.numbers(value, Kind::Time, seconds)?,
+            Shape::Program => self.program(value)?,
             Shape::Start => {
                 let (stress, states) = value.split_at(value.find(',').unwrap_or(value.len()));
-                let stress = self.number(stress, Kind::Stress, 1.0)?;
-                vec![(self.flag.to_owned(), stress + states)]
+                self.number(stress, Kind::Stress, 1.0)? + states
             }
-        })
+        };
+        Ok(vec![(self.flag.to_owned(), value)])
     }
 
     /// The velocities and times of a program; a file stays.

@@ -125,10 +125,8 @@ pub(in super::super) fn with_unit(text: &str) -> Option<(&str, &str)> {
     if !digits.starts_with(|c: char| c.is_ascii_digit() || c == '.') {
         return None;
     }
-    let ends = (1..=text.len()).rev().filter(|&i| text.is_char_boundary(i));
-    let end = ends
-        .into_iter()
-        .find(|&i| text[..i].parse::<f64>().is_ok())?;
+    let mut ends = (1..=text.len()).rev();
+    let end = ends.find(|&i| text.is_char_boundary(i) && text[..i].parse::<f64>().is_ok())?;
     let (number, unit) = (&text[..end], text[end..].trim_start());
     unit.starts_with(|c: char| c.is_alphabetic() || c == '/')
         .then_some((number, unit))
