@@ -182,6 +182,10 @@ fn ranges_by_name_are_those_of_the_older_options() {
         "points are placed by the curve",
     );
     refused(
+        "branch equilibria --driving 1um/s --stiffness 5GPa/m --along Dc=1um:2um",
+        "--slip-length scales all other numbers and cannot vary here; vary --stiffness and --healing-time",
+    );
+    refused(
         "branch equilibria --stiffness 0.3 --along driving=0.1:10 --from 1",
         "--from",
     );

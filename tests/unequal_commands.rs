@@ -430,7 +430,7 @@ fn what_is_wrong_is_refused_in_one_sentence() {
     );
     refused_in_one_line(
         &format!("{orbit} --start hopf {differ}"),
-        "only to equal interfaces",
+        "for equal interfaces",
     );
 }
 
