@@ -275,7 +275,7 @@ fn an_interrupted_file_is_gone_on_with() {
         ),
         (
             format!("{EQUILIBRIA} --format json --resume {}", path.display()),
-            "only CSV can be gone on with",
+            "only CSV can be resumed",
         ),
         (
             format!("{EQUILIBRIA} -o other.csv --resume {}", path.display()),
@@ -315,7 +315,7 @@ fn an_interrupt_keeps_whole_rows_and_says_how_to_go_on() {
     let ended = child.wait_with_output().expect("it ends");
     assert_eq!(ended.status.code(), Some(130));
     let said = String::from_utf8_lossy(&ended.stderr);
-    assert!(said.contains("interrupted; go on with --resume"), "{said}");
+    assert!(said.contains("interrupted; resume with --resume"), "{said}");
     let text = std::fs::read_to_string(&path).expect("kept");
     assert!(text.ends_with('\n') && text.starts_with("# twinslip"));
     let table = csv(&text);

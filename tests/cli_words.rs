@@ -172,13 +172,24 @@ fn shells_complete_commands_options_and_names() {
         assert_eq!(words, shell != "fish", "{shell}");
     }
     assert_eq!(run(&["completions", "tcsh"]).code, 2);
+    let file = folder("completions").join("twinslip.bash");
+    let path = file.to_str().expect("UTF-8");
+    let ended = run(&["completions", "bash", "-o", path]);
+    assert_eq!((ended.code, ended.out.as_str()), (0, ""));
+    let said = format!("wrote the completions for bash into {path}\n");
+    assert_eq!(ended.err, said);
+    let written = std::fs::read_to_string(&file).expect("a script");
+    assert_eq!(written, run(&["completions", "bash"]).out);
 }
 
 #[test]
 fn every_command_has_a_manual_page() {
     let place = folder("man").join("new");
     let ended = run(&["man", "--out", place.to_str().expect("UTF-8")]);
-    assert_eq!((ended.code, ended.err.as_str()), (0, ""));
+    assert_eq!((ended.code, ended.out.as_str()), (0, ""));
+    let pages = std::fs::read_dir(&place).expect("a folder").count();
+    let said = format!("wrote {pages} pages into {}", place.display());
+    assert!(ended.err.starts_with(&said), "{}", ended.err);
     let read = |name: String| std::fs::read_to_string(place.join(name)).expect("a page");
     assert!(read("twinslip.1".into()).contains("Exit status"));
     for command in COMPUTING.into_iter().chain(OTHERS) {

@@ -406,11 +406,11 @@ fn what_several_interfaces_do_not_have_is_refused() {
     }
     refused(
         &model("--interfaces 3 --set residual_strength_2=0.0011"),
-        "the 3 interfaces are equal, and none has a number of its own; two interfaces may differ",
+        "the 3 interfaces are equal; only two interfaces may differ",
     );
     refused(
         &model("--interfaces 3 --law composite.toml"),
-        "the steady states of 3 interfaces are of built-in laws, those of one or two of any law",
+        "the steady states of 3 interfaces need a built-in law, those of one or two take any law",
     );
     refused(
         &model("--interfaces 3 --solver kinsol"),

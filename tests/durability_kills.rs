@@ -256,7 +256,7 @@ fn an_interrupt_says_what_is_kept() {
         ),
         (
             format!("locus torus --step-limit 1e-3 -o {}", rows.display()),
-            "go on with --resume",
+            "resume with --resume",
         ),
         (
             "integrate --driving 10 --stiffness 0.14 --until 1e9 --format csv".to_owned(),
@@ -386,6 +386,6 @@ fn a_checkpoint_of_another_run_is_refused() {
     );
     refused(
         "integrate --driving 10 --stiffness 0.1 --until 1 --checkpoint a -o b.csv",
-        "of runs of many interfaces",
+        "for runs of many interfaces",
     );
 }

@@ -59,7 +59,7 @@ fn a_parameter_is_fitted_or_given_or_varies() {
     refused("law --law spinodal", "is a fit of the law dieterich-ruina");
     refused(
         "locus hopf --resume nothing.csv",
-        "keeps nothing to go on with",
+        "cannot be resumed or split",
     );
     refused_in_one_line(
         &format!("sweep --driving 1e-6 --stiffness 1e10 --ensemble {fit}:0"),

@@ -6,8 +6,11 @@ mod common;
 mod drawn;
 
 mod branches;
+mod cli_faults;
+mod cli_given;
 mod cli_input;
 mod cli_runs;
+mod cli_units;
 mod cli_words;
 mod equilibria;
 mod equilibria_random;

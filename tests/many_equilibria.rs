@@ -483,7 +483,7 @@ fn what_is_no_question_is_refused() {
     ] {
         refused_in_one_line(
             &format!("equilibria --draw slip_length=0.9:1.1 {other}"),
-            "has none of these",
+            "does not have",
         );
     }
     // one slides away from the others without end

@@ -51,14 +51,14 @@ fn what_cannot_be_set_is_refused_in_one_sentence() {
         ("damping=inf", "is not a finite number"),
         ("damping=-1", "damping is -1, but must be zero or positive"),
         ("healing_time=0", "healing-time is 0, but must be positive"),
-        ("slip_length=2", "without --si it is a unit"),
+        ("slip_length=2", "without --si it is the unit"),
     ] {
         refused_in_one_line(&format!("{model} --set {set}"), sentence);
     }
     refused_in_one_line("locus hopf --set stiffness=1", "varies along a curve");
     refused_in_one_line(
         "sweep --driving 1:2:2 --stiffness 1:2:2 --set driving=1",
-        "the grid of this command has it",
+        "the grid of this command sets it",
     );
     refused_in_one_line(
         &format!("{model} --damping -1"),

@@ -165,7 +165,6 @@ fn command_of(text: &str) -> twinslip::Result<Command> {
     Command::of_scene(
         &SceneFile::parse("one.toml", text, &Command::program())?,
         &[],
-        &[],
     )
 }
 

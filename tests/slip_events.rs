@@ -524,11 +524,11 @@ fn bad_catalogues_are_refused() {
         ),
         (
             "--interfaces 9 --events --format csv",
-            "--events needs a file",
+            "--events needs a separate file",
         ),
         (
             "--interfaces 9 --events e.csv --participation --format csv",
-            "--participation needs a file",
+            "--participation needs a separate file",
         ),
         (
             "--interfaces 9 --events --participation p.csv --format json",
@@ -540,11 +540,11 @@ fn bad_catalogues_are_refused() {
         ),
         (
             "--events --participation --format json",
-            "participation is of the events of three interfaces and more",
+            "participation is for the events of three or more interfaces",
         ),
         (
             "--interfaces 1 --events --plot-events e.svg --format json",
-            "plot-events is of the events of three interfaces and more",
+            "plot-events is for the events of three or more interfaces",
         ),
         ("--clusters 3,4 --events --format json", "stick-slip events"),
     ] {

@@ -354,11 +354,11 @@ fn what_cannot_vary_is_refused_in_one_sentence() {
         ),
         (
             "--system lorenz --grid r=1:2:3 --grid r=1:2:3",
-            "--grid r: another --grid says already what it is",
+            "--grid r: another --grid already sets it",
         ),
         (
             "--system lorenz --grid r=1:2:3 --set r=2",
-            "--grid r: --set says already what it is",
+            "--grid r: --set already sets it",
         ),
         (
             "--system lorenz --grid r=1:2:2 --grid s=1:2:2 --grid b=1:2:2",
@@ -366,7 +366,7 @@ fn what_cannot_vary_is_refused_in_one_sentence() {
         ),
         (
             "--system lorenz --grid r=1:2:2 --driving 0.1",
-            "are of interfaces",
+            "belong to interfaces",
         ),
         (
             "--system lorenz --grid r=1:2:2 --surface q",
@@ -398,11 +398,11 @@ fn what_cannot_vary_is_refused_in_one_sentence() {
         ),
         (
             "--driving 0.1 --stiffness 0.1 --grid healing_time=1:2:2 --healing-time 3",
-            "--healing-time says already what it is",
+            "--healing-time already sets it",
         ),
         (
             "--driving 0.1 --stiffness 0.1 --grid driving=1:2:2",
-            "--driving says already what it is",
+            "--driving already sets it",
         ),
         (
             "--driving 0.1 --stiffness 0.1 --grid driving_2=1:2:2",
@@ -430,7 +430,7 @@ fn what_cannot_vary_is_refused_in_one_sentence() {
         ),
         (
             "--law composite.toml --driving 0.1 --stiffness 0.1 --grid driving=-0.1:0.2:2",
-            "--driving says already what it is",
+            "--driving already sets it",
         ),
         (
             "--law composite.toml --stiffness 0.1 --grid driving=-0.1:0.2:2",

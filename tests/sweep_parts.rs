@@ -117,7 +117,7 @@ fn files_of_other_sweeps_are_refused_and_stay() {
         ),
         (
             "sweep --driving 0.14:0.5:6 --stiffness 0.3:0.5:4 --format json",
-            "only CSV can be gone on with",
+            "only CSV can be resumed",
         ),
         (
             "sweep --driving 0.14:0.5:6 --stiffness 0.3:0.5:4 -o other.csv",
@@ -212,7 +212,7 @@ fn an_interrupt_keeps_whole_rows_and_says_how_to_go_on() {
     let ended = child.wait_with_output().expect("it ends");
     assert_eq!(ended.status.code(), Some(130));
     let said = String::from_utf8_lossy(&ended.stderr);
-    assert!(said.contains("interrupted; go on with --resume"), "{said}");
+    assert!(said.contains("interrupted; resume with --resume"), "{said}");
     let text = fs::read_to_string(&path).expect("kept");
     assert!(text.ends_with('\n') && text.starts_with("# twinslip"));
     let table = csv(&text);
@@ -256,12 +256,12 @@ fn parts_are_merged_to_the_bytes_of_one_run() {
         "3/3",
     );
     let mixed = merge(&[&name(1), &name(2), &other]);
-    refused(&mixed, "are of different sweeps");
+    refused(&mixed, "belong to different sweeps");
     of_other(
         "--driving 0.14:0.5:6 --stiffness 0.3:0.5:4 --follow --starts 2",
         "3/4",
     );
-    refused(&mixed, "are of different sweeps");
+    refused(&mixed, "belong to different sweeps");
     let path = place.join("whole.csv").display().to_string();
     refused(
         &merge(&[&name(1), &path]),

@@ -202,7 +202,7 @@ fn wrong_grids_are_refused_in_one_sentence() {
         (plane("0.1 --shard 4/3"), "shard is 4/3, but must be I/N"),
         (plane("0.1 --shard 2"), "shard is 2, but must be I/N"),
         (plane("0.1 --plot map.pdf"), "map.pdf"),
-        (plane("0.1 --resume -"), "only a file can be gone on with"),
+        (plane("0.1 --resume -"), "only a file can be resumed"),
         (
             plane("0.1:0.2:2 --basin --state-1 0.1:0.2:2 --state-2 0.1:0.2:2"),
             "with --basin --driving must be a single value, not 0.1:0.2:2",

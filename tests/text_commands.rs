@@ -129,12 +129,12 @@ fn what_makes_no_sense_with_a_system_is_refused() {
     }
     refused_in_one_line(
         "integrate --system lorenz --until 1 --events",
-        "which need interfaces",
+        "of interfaces with a built-in law",
     );
-    refused_in_one_line("law --system lorenz", "this command is of interfaces");
+    refused_in_one_line("law --system lorenz", "this command is for interfaces");
     refused_in_one_line(
         "sweep --driving 1:2:3 --stiffness 1:2:3 --system lorenz",
-        "--driving and --stiffness are of interfaces",
+        "--driving and --stiffness belong to interfaces",
     );
     refused_in_one_line(
         "integrate --system lorenz --until 1 --set rr=3",

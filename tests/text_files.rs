@@ -144,7 +144,7 @@ fn mistakes_are_told_by_line_and_column() {
         (changed("a = 0.2", "x = 0.2"), "4:1: \"x\" is given twice"),
         (
             changed("a = 0.2", "sin = 0.2"),
-            "4:1: \"sin\" has a meaning of its own",
+            "4:1: \"sin\" is reserved in formulas",
         ),
         (
             changed("a = 0.2", "a = \"0.2\""),
@@ -156,7 +156,7 @@ fn mistakes_are_told_by_line_and_column() {
         ),
         (
             changed("a = 0.2", "\"a b\" = 0.2"),
-            "4:1: \"a b\" is no name",
+            "4:1: \"a b\" is not a name",
         ),
         (
             changed("z = \"b + z*rate\"\n", ""),

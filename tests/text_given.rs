@@ -129,7 +129,7 @@ fn parts_of_a_sweep_are_joined_of_files_alone() {
     assert!(
         ended
             .err
-            .contains("map.csv: it is of a system or law that was given as text"),
+            .contains("map.csv: its system or law was given as text"),
         "{}",
         ended.err
     );

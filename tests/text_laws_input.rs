@@ -190,7 +190,7 @@ fn what_has_no_meaning_for_a_law_from_a_file_is_refused() {
         ),
         (
             format!("{run} --events"),
-            "which need interfaces that are built in",
+            "of interfaces with a built-in law",
         ),
         (
             format!("{run} --start 1,2"),
@@ -215,7 +215,7 @@ fn what_has_no_meaning_for_a_law_from_a_file_is_refused() {
         ),
         (
             "equilibria --driving 1 --box stress=0:1".into(),
-            "is where steady states of a",
+            "limits the search for steady states of a",
         ),
     ] {
         refused_in_one_line(&arguments, sentence);

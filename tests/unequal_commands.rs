@@ -410,7 +410,7 @@ fn what_is_wrong_is_refused_in_one_sentence() {
         ("slip_length_1=2", "slip_length_1 is 2, but must be 1"),
         ("normal_stress_1=2", "normal_stress_1 is 2, but must be 1"),
         ("slip_length_2=much", "is not a finite number"),
-        ("slip_length=2", "it is a unit"),
+        ("slip_length=2", "it is the unit"),
     ] {
         refused_in_one_line(&format!("{model} --set {set}"), sentence);
     }
@@ -426,7 +426,7 @@ fn what_is_wrong_is_refused_in_one_sentence() {
     let orbit = "orbit --driving 10 --stiffness 0.14";
     refused_in_one_line(
         &format!("{orbit} --symmetry symmetric {differ}"),
-        "never move alike",
+        "unequal interfaces have no symmetric orbits",
     );
     refused_in_one_line(
         &format!("{orbit} --start hopf {differ}"),

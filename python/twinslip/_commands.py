@@ -59,12 +59,12 @@ class Model:
         reference_friction: Number = None,
         damping: Number = None,
         si: bool = False,
-        shear_modulus: Number = None,
-        shear_wave_speed: Number = None,
         slip_length: Number = None,
+        normal_stress: Number = None,
         reference_rate: Number = None,
         time_unit: Text = None,
-        normal_stress: Number = None,
+        shear_modulus: Number = None,
+        shear_wave_speed: Number = None,
         **parameters: SupportsFloat,
     ) -> None:
         """Keeps what is given; the defaults are those of the command line, which are the paper's.
@@ -72,24 +72,24 @@ class Model:
         Parameters
         ----------
         law : str, optional
-            Friction law, by the paper's equations or others: spinodal (35), bounded (6),
-            regularised-ageing (5), dieterich-ruina (4) or slip Ruina (1983). Or a law of one's
-            own: FILE.toml with its slip_rate, in tau and psi, its evolution, in v and psi, and its
-            parameters [default: spinodal]
+            Friction law, with its equation in the paper or its source: spinodal (35), bounded (6),
+            regularised-ageing (5), dieterich-ruina (4) or slip Ruina (1983); ageing is dieterich-
+            ruina. Or a user-defined law: FILE.toml with slip_rate (in tau and psi), evolution (in
+            v and psi) and parameters [default: spinodal]
         driving : float, optional
             Driving velocity V_H [V*; m/s with ``si``]
         stiffness : float, optional
             Stiffness K = k L/(a sigma) [a sigma/L; k in Pa/m with ``si``]
         system : path or text, optional
-            A system of one's own in place of interfaces: a TOML file with its states, parameters
-            and rates, or one that is built in, such as lorenz
+            A user-defined system in place of interfaces: a TOML file with its states, parameters
+            and rates, or a built-in one, such as lorenz
         interfaces : int, optional
-            Number N of frictional interfaces, which all share the stress: up to 7 that move on
-            their own, up to 600 in equilibria, up to millions in integrate [default: as many as in
-            all clusters, or 2]
+            Number N of frictional interfaces, all under the same stress: up to 7 independent ones,
+            up to 600 in equilibria, up to millions in integrate [default: the sum of ``clusters``,
+            or 2]
         clusters : sequence of int, optional
-            Equal interfaces in clusters that move alike: how many there are in each, which
-            together are N. States, slip rates and starts then have one number a cluster
+            Group equal interfaces into clusters that move together: the sizes of the clusters, N
+            in total. States, slip rates and starts then have one number per cluster
         healing_time : float, optional
             Healing time R = t** V*/L [default: 100 L/V*; t** in s with ``si``]
         residual_strength : float, optional
@@ -104,21 +104,22 @@ class Model:
             Radiation damping eta V*/(a sigma): tau - eta v stands in place of tau in the law
             [default: 0; eta in Pa s/m with ``si``]
         si : bool, optional
-            All input and output in SI units
+            All input and output in SI units; implied by a value with a unit, such as 10um, 50MPa,
+            1nm/s or 500year
+        slip_length : float, optional
+            With ``si``: L in m [default: 0.9e-6]
+        normal_stress : float, optional
+            With ``si``: sigma in Pa; it only scales stress and stiffness, and the paper gives none
+            [default: 1e6]
+        reference_rate : float, optional
+            With ``si``: V* in m/s [default: 1e-6]
+        time_unit : str, optional
+            With ``si``: unit of times in and out (run, period, and the state of laws in which it
+            is a time); parameters stay in SI [default: s]
         shear_modulus : float, optional
             With ``si``: G in Pa, for the damping G/(2 c_s)
         shear_wave_speed : float, optional
             With ``si``: c_s in m/s, for the damping G/(2 c_s)
-        slip_length : float, optional
-            With ``si``: L in m [default: 0.9e-6]
-        reference_rate : float, optional
-            With ``si``: V* in m/s [default: 1e-6]
-        time_unit : str, optional
-            With ``si``: unit of times in and out (run, period, state of laws in which it is a
-            time); parameters stay in SI [default: s]
-        normal_stress : float, optional
-            With ``si``: sigma in Pa; the paper states none, and it only scales stress and
-            stiffness [default: 1e6]
         **parameters : float
             Any other parameter by the name that JSON has; with _1 or _2 after it that of one
             interface: ``residual_strength_2=0.002``. Those of a system of one's own by their own
@@ -157,11 +158,11 @@ class Commands:
         Parameters
         ----------
         ensemble : str, optional
-            The parameters of a law that `twinslip fit` has fitted, with their uncertainty, which
-            is carried through everything: numbers get an interval of 95 %, what may happen or not
-            a probability. ``si`` is implied; what else is given holds over what was fixed in the
-            fit. N draws check the intervals, which follow from derivatives; without draws there
-            are no probabilities [N: 200; of sweep, which has draws alone, 50]
+            Propagate the uncertainty of a fit: the parameters of a law from `twinslip fit`, with
+            their covariance. Numbers get a 95 % interval, yes-or-no results a probability. Implies
+            ``si``; options given here replace values that were fixed in the fit. N draws check the
+            intervals, which follow from derivatives; without draws there are no probabilities
+            [default N: 200; 50 for sweep, which uses draws alone]
         points : int, optional
             Number of slip rates, equally spaced in ln V [default: 200]
         range : (float, float), optional
@@ -188,8 +189,6 @@ class Commands:
         self,
         *,
         start: Text = None,
-        draw: Text = None,
-        seed: Count = None,
         program: Text = None,
         until: Number = None,
         points: Count = None,
@@ -198,14 +197,16 @@ class Commands:
         columns: Text = None,
         events: bool = False,
         event_threshold: Number = None,
-        participation: bool = False,
-        estimate_error: bool = False,
-        reference: bool = False,
         method: Text = None,
         rtol: Number = None,
         atol: Number = None,
         max_step: Number = None,
         max_steps: Count = None,
+        estimate_error: bool = False,
+        reference: bool = False,
+        draw: Text = None,
+        seed: Count = None,
+        participation: bool = False,
         progress: Optional[bool] = None,
     ) -> Trajectory:
         """A run in time: stress, states, slip rates, slips, stick-slip events.
@@ -213,54 +214,38 @@ class Commands:
         Parameters
         ----------
         start : str or sequence of float, optional
-            TAU,PSI1,PSI2 (TAU,PSI for one interface), or near-symmetric[:EPS]: tau and psi1 at the
-            symmetric steady state and psi2 = psi1 exp(EPS), EPS = 0.01 unless given, or -0.01
-            where psi2 would exceed 1; where the interfaces differ, psi of each at its own steady
-            state at V_H/2, the second one times exp(EPS) [default: near-symmetric]. Of N
-            interfaces or clusters one psi for each, or spread[:EPS[:SEED]]: psi of each at its
-            steady state times exp(EPS z), z drawn between -1 and 1 [default from 8 interfaces on].
-            Of a system from a file: the values of all states in their order [default: its table
-            start]
-        draw : dict of (A, B) or (A, B, "log"), optional
-            A constant that each of many interfaces has of its own, drawn between A and B,
-            NAME=A:B, or by its logarithm, NAME=A:Blog. NAME is healing_time, residual_strength,
-            evolution_effect, reference_friction or slip_length
-        seed : int, optional
-            With ``draw``: another seed, other constants [default: 1]
+            Initial state: TAU,PSI1,PSI2 (TAU,PSI for one interface), or near-symmetric[:EPS]: tau
+            and psi1 at the symmetric steady state and psi2 = psi1 exp(EPS), EPS = 0.01 by default,
+            or -0.01 where psi2 would exceed 1; unequal interfaces start at their steady states at
+            V_H/2, the second psi times exp(EPS) [default: near-symmetric]. For N interfaces or
+            clusters: one psi each, or spread[:EPS[:SEED]], psi at the steady state times exp(EPS
+            z) with z drawn between -1 and 1 [default from 8 interfaces on]. For a system from a
+            file: all states in order [default: its table start]
         program : str or sequence of (time, V_H) and ((begin, end), V_H), optional
-            How V_H changes on the way, from ``driving`` on: "T:V,T:V,..." for steps to V at T,
-            where V = 0 is a hold, and "T1-T2:V" for a ramp; or FILE.csv with the columns time,
-            driving and, for ramps, until. Rows then have a column driving, and stand at both sides
-            of a change
+            Changes of V_H, which begins at ``driving``: "T:V,T:V,..." for steps to V at T, where V
+            = 0 is a hold, and "T1-T2:V" for a ramp; or FILE.csv with the columns time, driving
+            and, for ramps, until. Rows then have a column driving and stand on both sides of a
+            change
         until : float, optional
-            End of the run; it begins at 0
+            End time of the run, which begins at 0
         points : int, optional
-            N rows equally spaced in time, both ends included, instead of one at every step
+            N rows equally spaced in time, both ends included, instead of one per step
         every : float, optional
             A row at every multiple of DT
         final_only : bool, optional
-            Only the last row: nothing else is stored, and without slip columns nothing but steps
-            is computed
+            Only the last row: nothing else is stored, and without slip columns nothing but the
+            steps is computed
         columns : str or sequence of str, optional
-            Only these columns, comma-separated; what is not asked for is not computed
+            Only these columns, comma-separated; columns left out are not computed
         events : bool, optional
-            Find stick-slip events: times between a maximum and a minimum of stress, when the
-            interfaces together slip faster than V_H. Of three interfaces and more: times in which
-            at least one slips faster than a threshold
+            Find stick-slip events. With one or two interfaces: from a maximum of stress to the
+            next minimum, while the interfaces together slip faster than V_H. With three or more:
+            while at least one slips faster than a threshold
         event_threshold : float, optional
-            Count events whose total slip rate exceeds X times V_H [default: 2]; with ``program``
-            times the V_H of that moment, so that a hold, in which all slip is faster than V_H = 0,
-            counts as one. Of three interfaces and more each slips while it is faster than X times
-            V_H/N [default: 10]
-        participation : bool, optional
-            With ``events`` of three interfaces and more: in how many events each interface slips,
-            how far, and its constants that are drawn
-        estimate_error : bool, optional
-            Estimate the error of the last row by a second run with 10,000 times tighter
-            tolerances, below ``rtol`` 1e-12 by the reference
-        reference : bool, optional
-            With ``estimate_error``: by a run in double-double arithmetic, of 31 digits, some
-            hundred times slower than taylor
+            Count events whose total slip rate exceeds X times V_H [default: 2]; with ``program``,
+            X times the current V_H, so that a hold (V_H = 0), in which all slip is faster, counts
+            as one event. With three or more interfaces, an interface slips while it is faster than
+            X times V_H/N [default: 10]
         method : str, optional
             Integrator: auto, taylor, rodas5p, rodas4, rosenbrock23, radau, cvode-bdf or cvode-
             adams [default: auto]
@@ -269,10 +254,25 @@ class Commands:
         atol : float, optional
             Absolute local error tolerance of tau and ln psi [default: as ``rtol``]
         max_step : float, optional
-            Largest step in time, for what is shorter than a step: a pulse that begins and ends
-            within one is seen by no method
+            Largest time step, for features shorter than a step: no method sees a pulse that begins
+            and ends within one step
         max_steps : int, optional
-            Give up after so many steps [default: 10000000]
+            Stop after this many steps [default: 10000000]
+        estimate_error : bool, optional
+            Estimate the error of the last row by a second run with tolerances 10,000 times
+            tighter, or by ``reference`` below ``rtol`` 1e-12
+        reference : bool, optional
+            With ``estimate_error``: make the second run in double-double arithmetic (31 digits),
+            some hundred times slower than taylor
+        draw : dict of (A, B) or (A, B, "log"), optional
+            Draw a constant of each of many interfaces at random between A and B, NAME=A:B, or log-
+            uniformly, NAME=A:Blog; repeatable. NAME is healing_time, residual_strength,
+            evolution_effect, reference_friction or slip_length
+        seed : int, optional
+            With ``draw``: the random seed [default: 1]
+        participation : bool, optional
+            With ``events`` of three or more interfaces: for each interface the number of events in
+            which it slips, its slip, and its drawn constants
         progress : bool, optional
             Whether a long computation shows a bar, by tqdm [default: in a notebook and on a
             terminal].
@@ -297,9 +297,9 @@ class Commands:
         ensemble: Text = None,
         box: Text = None,
         start: Text = None,
+        solver: Text = None,
         draw: Text = None,
         seed: Count = None,
-        solver: Text = None,
         progress: Optional[bool] = None,
     ) -> Equilibria:
         """All steady states at a driving velocity, with eigenvalues and stability.
@@ -307,29 +307,29 @@ class Commands:
         Parameters
         ----------
         ensemble : str, optional
-            The parameters of a law that `twinslip fit` has fitted, with their uncertainty, which
-            is carried through everything: numbers get an interval of 95 %, what may happen or not
-            a probability. ``si`` is implied; what else is given holds over what was fixed in the
-            fit. N draws check the intervals, which follow from derivatives; without draws there
-            are no probabilities [N: 200; of sweep, which has draws alone, 50]
+            Propagate the uncertainty of a fit: the parameters of a law from `twinslip fit`, with
+            their covariance. Numbers get a 95 % interval, yes-or-no results a probability. Implies
+            ``si``; options given here replace values that were fixed in the fit. N draws check the
+            intervals, which follow from derivatives; without draws there are no probabilities
+            [default N: 200; 50 for sweep, which uses draws alone]
         box : dict of (A, B), optional
-            With ``system``, or a ``law`` from a file: all steady states in a box, a range for
-            every state: x=-10:10,y=0:5 [default of a law: what its steady states have at rates
-            from V_H/1e6 to V_H]
+            With ``system`` or a ``law`` from a file: all steady states in a box, a range for every
+            state: x=-10:10,y=0:5 [default for a law: its steady states at rates from V_H/1e6 to
+            V_H]
         start : str or sequence of float, optional
-            With ``system``: near which values of all states, in their order [default: its table
-            start]. With a ``law`` from a file TAU,PSI1,PSI2 or near-symmetric:EPS. With ``draw``
-            as in integrate [default: near-symmetric:0]
-        draw : dict of (A, B) or (A, B, "log"), optional
-            A constant that each of many interfaces has of its own, drawn as in integrate:
-            NAME=A:B, or by its logarithm NAME=A:Blog. One steady state of possibly many is found,
-            that which Newton's method comes to from ``start``, with the number of eigenvalues that
-            grow; all are found for equal interfaces
-        seed : int, optional
-            With ``draw``: another seed, other constants [default: 1]
+            With ``system``: search near this point, the values of all states in order [default:
+            its table start]. With a ``law`` from a file TAU,PSI1,PSI2 or near-symmetric:EPS. With
+            ``draw`` as in integrate [default: near-symmetric:0]
         solver : str, optional
-            kinsol or newton, both to the same digits [default: kinsol; newton in a build without
+            kinsol or newton; both give the same digits [default: kinsol; newton in a build without
             SUNDIALS]
+        draw : dict of (A, B) or (A, B, "log"), optional
+            Draw a constant of each of many interfaces at random, as in integrate: NAME=A:B, or
+            log-uniformly NAME=A:Blog; repeatable. Finds one steady state of possibly many, to
+            which Newton's method converges from ``start``, and its number of growing eigenvalues;
+            with equal interfaces all are found
+        seed : int, optional
+            With ``draw``: the random seed [default: 1]
         progress : bool, optional
             Whether a long computation shows a bar, by tqdm [default: in a notebook and on a
             terminal].
@@ -368,36 +368,36 @@ class Commands:
         Parameters
         ----------
         symmetry : str, optional
-            symmetric (both interfaces move alike) or asymmetric; without meaning where they differ
-            [default: symmetric, but without a start and where that orbit is not stable what else
-            runs settle on]
+            symmetric (both interfaces in phase) or asymmetric; not used for unequal interfaces
+            [default: symmetric; without ``start``, where that orbit is unstable, the orbit on
+            which runs settle]
         start : str or sequence of float, optional
-            TAU,PSI1,PSI2 (TAU,PSI for one interface) at or near the orbit; near-symmetric[:EPS];
-            or hopf, for the branch from the nearest Hopf point along V_H. Without it the orbit is
-            looked for. Of a system from a file: the values of all states in their order [default:
-            its table start]
+            A point on or near the orbit: TAU,PSI1,PSI2 (TAU,PSI for one interface); near-
+            symmetric[:EPS]; or hopf, for the branch from the nearest Hopf point along V_H. By
+            default the orbit is searched for. For a system from a file: all states in order
+            [default: its table start]
         period_guess : float, optional
-            The period, roughly; with it no shorter cycle is taken instead
+            Approximate period; shorter cycles are then not accepted
         points : int, optional
-            Rows over one period, as those of integrate: N equally spaced in time, from
-            result.orbit.point back to it. A table or CSV then holds these, and in JSON they are
-            result.rows
+            Rows over one period, as in integrate: N equally spaced in time, from
+            result.orbit.point back to it. A table or CSV then holds these rows, and JSON has them
+            as result.rows
         crosscheck : str, optional
-            A second method that computes the orbit again, or none [default: cvode-adams; rodas5p
-            in a build without SUNDIALS]
+            Second method that computes the orbit again as a cross-check, or none [default: cvode-
+            adams; rodas5p in a build without SUNDIALS]
         method : str, optional
-            The method of the flow and its derivatives: auto (taylor), taylor, cvode-bdf, cvode-
-            adams, rodas5p, rodas4, rosenbrock23 or radau [default: auto]
+            Method for the flow and its derivatives: auto (taylor), taylor, cvode-bdf, cvode-adams,
+            rodas5p, rodas4, rosenbrock23 or radau [default: auto]
         rtol : float, optional
-            Relative local error tolerance [default: 1e-15 of taylor, 1e-13 of radau, 1e-11 of the
-            others]
+            Relative local error tolerance [default: 1e-15 for taylor, 1e-13 for radau, 1e-11 for
+            the others]
         atol : float, optional
             Absolute local error tolerance of tau and ln psi [default: as ``rtol``]
         max_step : float, optional
-            Largest step in time, for what is shorter than a step: a pulse that begins and ends
-            within one is seen by no method
+            Largest time step, for features shorter than a step: no method sees a pulse that begins
+            and ends within one step
         max_steps : int, optional
-            Give up an arc after so many steps [default: 10000000]
+            Stop an arc after this many steps [default: 10000000]
         progress : bool, optional
             Whether a long computation shows a bar, by tqdm [default: in a notebook and on a
             terminal].
@@ -438,31 +438,30 @@ class Commands:
         Parameters
         ----------
         start : str or sequence of float, optional
-            TAU,PSI1,PSI2 (TAU,PSI for one interface), or near-symmetric[:EPS]: tau and psi1 at the
-            symmetric steady state and psi2 = psi1 exp(EPS), EPS = 0.01 unless given, or -0.01
-            where psi2 would exceed 1; where the interfaces differ, psi of each at its own steady
-            state at V_H/2, the second one times exp(EPS) [default: near-symmetric]. Of N
-            interfaces or clusters one psi for each, or spread[:EPS[:SEED]]: psi of each at its
-            steady state times exp(EPS z), z drawn between -1 and 1 [default from 8 interfaces on].
-            Of a system from a file: the values of all states in their order [default: its table
-            start]
+            Initial state: TAU,PSI1,PSI2 (TAU,PSI for one interface), or near-symmetric[:EPS]: tau
+            and psi1 at the symmetric steady state and psi2 = psi1 exp(EPS), EPS = 0.01 by default,
+            or -0.01 where psi2 would exceed 1; unequal interfaces start at their steady states at
+            V_H/2, the second psi times exp(EPS) [default: near-symmetric]. For N interfaces or
+            clusters: one psi each, or spread[:EPS[:SEED]], psi at the steady state times exp(EPS
+            z) with z drawn between -1 and 1 [default from 8 interfaces on]. For a system from a
+            file: all states in order [default: its table start]
         surface : str, number or sequence, optional
-            The section of the return map: stress=VALUE, or stress=auto for the steady stress at
-            the mean slip rate, tau_ss(V_H/2) of two interfaces [default: stress=auto]. With
-            ``system`` STATE=VALUE, which must be given, and with a ``law`` from a file either
+            Section of the return map: stress=VALUE, or stress=auto for the steady stress at the
+            mean slip rate, tau_ss(V_H/2) of two interfaces [default: stress=auto]. With ``system``
+            STATE=VALUE (required); with a ``law`` from a file either form
         upwards : bool, optional
-            Count returns where the stress (with ``system`` the state) rises through the section,
-            instead of where it falls
+            Count returns where the stress (with ``system`` the state) rises through the section;
+            by default where it falls
         returns : int, optional
-            Returns that are recorded [default: 1000]
+            Number of returns to record [default: 1000]
         skip : int, optional
-            Returns that are skipped before, so that the run settles [default: 1000]
+            Number of returns to skip first, as a transient [default: 1000]
         patience : float, optional
             Longest time to wait for a return [default: 1e4 L/V* + 1000/(K V_H); 1e4 with
             ``system``]
         lyapunov : bool, optional
-            Lyapunov exponents: of a periodic orbit by its multipliers, else along as many returns
-            of a run of their own; without them chaos is not recognised
+            Compute Lyapunov exponents: of a periodic orbit from its multipliers, else along a
+            further run of as many returns; without them chaos is not recognised
         method : str, optional
             Integrator: auto, taylor, rodas5p, rodas4, rosenbrock23, radau, cvode-bdf or cvode-
             adams [default: auto]
@@ -471,10 +470,10 @@ class Commands:
         atol : float, optional
             Absolute local error tolerance of tau and ln psi [default: as ``rtol``]
         max_step : float, optional
-            Largest step in time, for what is shorter than a step: a pulse that begins and ends
-            within one is seen by no method
+            Largest time step, for features shorter than a step: no method sees a pulse that begins
+            and ends within one step
         max_steps : int, optional
-            Give up after so many steps [default: 10000000]
+            Stop after this many steps [default: 10000000]
         progress : bool, optional
             Whether a long computation shows a bar, by tqdm [default: in a notebook and on a
             terminal].
@@ -517,44 +516,46 @@ class Commands:
         Parameters
         ----------
         of : str, optional
-            What is followed: equilibria or orbits; in a scene file the key `of`
+            What to follow: equilibria or orbits; in a scene file the key `of`
         ensemble : str, optional
-            The parameters of a law that `twinslip fit` has fitted, with their uncertainty, which
-            is carried through everything: numbers get an interval of 95 %, what may happen or not
-            a probability. ``si`` is implied; what else is given holds over what was fixed in the
-            fit. N draws check the intervals, which follow from derivatives; without draws there
-            are no probabilities [N: 200; of sweep, which has draws alone, 50]
+            Propagate the uncertainty of a fit: the parameters of a law from `twinslip fit`, with
+            their covariance. Numbers get a 95 % interval, yes-or-no results a probability. Implies
+            ``si``; options given here replace values that were fixed in the fit. N draws check the
+            intervals, which follow from derivatives; without draws there are no probabilities
+            [default N: 200; 50 for sweep, which uses draws alone]
         along : str, optional
-            What varies: driving (V_H), stiffness (K) or any other parameter by its name; of a
-            system from a file any of its own [default: driving]
+            The free parameter, NAME or NAME=A:B: driving (V_H), stiffness (K) or any other
+            parameter by its name; for a system from a file any of its parameters [default:
+            driving]
         symmetry : str, optional
-            symmetric (both interfaces alike), asymmetric or both [default: both]
+            symmetric (both interfaces in phase), asymmetric or both [default: both]
         at : sequence of float, optional
-            Values of the parameter to land on exactly, comma-separated; their rows have the label
-            UZ
+            Values of the free parameter to land on exactly, comma-separated; their rows have the
+            label UZ
         doublings : int, optional
-            How many period doublings to follow: the branches of orbits with doubled period are
+            Number of period doublings to follow: the branches of orbits with doubled period are
             computed too [default: 0]
         box : dict of (A, B), optional
-            With ``system``, or a ``law`` from a file: branches of equilibria begin at all in a
-            box, a range for every state, and end where they leave it: x=-10:10,y=0:5
+            With ``system`` or a ``law`` from a file: branches of equilibria begin at all
+            equilibria in a box, a range for every state, and end where they leave it:
+            x=-10:10,y=0:5
         start : str or sequence of float, optional
             Branches of orbits begin at or near this point of an orbit, at ``from_``:
-            TAU,PSI1,PSI2, with ``system`` the values of all states in their order. Branches of
+            TAU,PSI1,PSI2, or with ``system`` the values of all states in order. Branches of
             equilibria of a ``system`` begin near it [default: the file's table start]
         period_guess : float, optional
-            With ``start`` of an orbit: its period, roughly
+            With ``start`` of an orbit: its approximate period
         step_limit : float, optional
             Factor on the limits of continuation steps: below 1 there are more points, above 1
             fewer [default: 1]
         max_points : int, optional
-            How many points there may be, of all branches or curves together; beyond is a failure,
-            and the points are kept [default: 20000]
+            Upper limit on the number of points of all branches or curves together; beyond it the
+            command fails and the points are kept [default: 20000]
         tolerance : float, optional
             Relative accuracy of special points, and of all points of a curve [default: 1e-11]
         crosscheck : str, optional
-            Compute each special point of orbits once more with a second method and report the
-            difference [METHOD: cvode-adams unless given; rodas5p in a build without SUNDIALS]
+            Recompute each special point of orbits with a second method and report the difference
+            [default METHOD: cvode-adams; rodas5p in a build without SUNDIALS]
         range : (float, float), optional
             Where the branches begin and end [default: V_H from 1e-3 to 1e6 V*; K from 1e-3 to 1 a
             sigma/L]
@@ -603,50 +604,53 @@ class Commands:
         Parameters
         ----------
         of : str, optional
-            The bifurcation that is followed: pitchfork, saddle-node or hopf of equilibria; orbit-
+            The bifurcation to follow: pitchfork, saddle-node or hopf of equilibria; orbit-
             pitchfork, orbit-saddle-node, period-doubling or torus of periodic orbits; in a scene
             file the key `of`
         ensemble : str, optional
-            The parameters of a law that `twinslip fit` has fitted, with their uncertainty, which
-            is carried through everything: numbers get an interval of 95 %, what may happen or not
-            a probability. ``si`` is implied; what else is given holds over what was fixed in the
-            fit. N draws check the intervals, which follow from derivatives; without draws there
-            are no probabilities [N: 200; of sweep, which has draws alone, 50]
+            Propagate the uncertainty of a fit: the parameters of a law from `twinslip fit`, with
+            their covariance. Numbers get a 95 % interval, yes-or-no results a probability. Implies
+            ``si``; options given here replace values that were fixed in the fit. N draws check the
+            intervals, which follow from derivatives; without draws there are no probabilities
+            [default N: 200; 50 for sweep, which uses draws alone]
         symmetry : str, optional
-            symmetric (both interfaces alike), asymmetric or both, where there are both [default:
+            symmetric (both interfaces in phase), asymmetric or both, where both exist [default:
             both]
         at_driving : sequence of float, optional
             Values of V_H to land on exactly, comma-separated, at every crossing
         at_stiffness : sequence of float, optional
             Values of K to land on exactly, comma-separated, at every crossing
         criticality : bool, optional
-            Say at every point whether the bifurcation is supercritical or subcritical
+            Classify the bifurcation at every point as supercritical or subcritical
         within : (str, str), optional
-            The two parameters that vary, by their names [default: driving,stiffness]
+            The two free parameters by name, each with a range if needed: NAME1=A:B,NAME2=C:D
+            [default: driving,stiffness]
         range : dict of (A, B), optional
-            NAME=A,B: the range of one of these
+            Range of a free parameter, NAME=A:B; repeatable
         at : dict of sequences of float, optional
-            NAME=V1,V2,...: values of one of these to land on exactly, at every crossing
+            Values of a free parameter to land on exactly at every crossing, NAME=V1,V2,...;
+            repeatable
         box : dict of (A, B), optional
-            With ``system``, or a ``law`` from a file: branches of equilibria begin at all in a
-            box, a range for every state, and end where they leave it: x=-10:10,y=0:5
+            With ``system`` or a ``law`` from a file: branches of equilibria begin at all
+            equilibria in a box, a range for every state, and end where they leave it:
+            x=-10:10,y=0:5
         start : str or sequence of float, optional
             Branches of orbits begin at or near this point of an orbit, at ``from_``:
-            TAU,PSI1,PSI2, with ``system`` the values of all states in their order. Branches of
+            TAU,PSI1,PSI2, or with ``system`` the values of all states in order. Branches of
             equilibria of a ``system`` begin near it [default: the file's table start]
         period_guess : float, optional
-            With ``start`` of an orbit: its period, roughly
+            With ``start`` of an orbit: its approximate period
         step_limit : float, optional
             Factor on the limits of continuation steps: below 1 there are more points, above 1
             fewer [default: 1]
         max_points : int, optional
-            How many points there may be, of all branches or curves together; beyond is a failure,
-            and the points are kept [default: 20000]
+            Upper limit on the number of points of all branches or curves together; beyond it the
+            command fails and the points are kept [default: 20000]
         tolerance : float, optional
             Relative accuracy of special points, and of all points of a curve [default: 1e-11]
         crosscheck : str, optional
-            Compute each special point of orbits once more with a second method and report the
-            difference [METHOD: cvode-adams unless given; rodas5p in a build without SUNDIALS]
+            Recompute each special point of orbits with a second method and report the difference
+            [default METHOD: cvode-adams; rodas5p in a build without SUNDIALS]
         progress : bool, optional
             Whether a long computation shows a bar, by tqdm [default: in a notebook and on a
             terminal].
@@ -683,12 +687,12 @@ class Commands:
         starts: Count = None,
         seed: Count = None,
         follow: bool = False,
-        lyapunov: bool = False,
+        curves: Text = None,
+        threads: Count = None,
         rtol: Number = None,
+        lyapunov: bool = False,
         max_returns: Count = None,
         max_steps: Count = None,
-        threads: Count = None,
-        curves: Text = None,
         progress: Optional[bool] = None,
     ) -> Sweep:
         """The regime at every point of a grid of V_H and K or any other parameters, or of every start.
@@ -696,61 +700,62 @@ class Commands:
         Parameters
         ----------
         ensemble : str, optional
-            The parameters of a law that `twinslip fit` has fitted, with their uncertainty, which
-            is carried through everything: numbers get an interval of 95 %, what may happen or not
-            a probability. ``si`` is implied; what else is given holds over what was fixed in the
-            fit. N draws check the intervals, which follow from derivatives; without draws there
-            are no probabilities [N: 200; of sweep, which has draws alone, 50]
+            Propagate the uncertainty of a fit: the parameters of a law from `twinslip fit`, with
+            their covariance. Numbers get a 95 % interval, yes-or-no results a probability. Implies
+            ``si``; options given here replace values that were fixed in the fit. N draws check the
+            intervals, which follow from derivatives; without draws there are no probabilities
+            [default N: 200; 50 for sweep, which uses draws alone]
         driving : (A, B, N) or (A, B, N, "log"), optional
-            N values of V_H from A to B, both included; with log equally spaced in ln V_H. One
-            value may stand alone
+            N values of V_H from A to B, both included; with log equally spaced in ln V_H. A single
+            value keeps V_H fixed
         stiffness : (A, B, M) or (A, B, M, "log"), optional
-            M values of K from A to B, both included; with log equally spaced in ln K. One value
-            may stand alone
+            M values of K from A to B, both included; with log equally spaced in ln K. A single
+            value keeps K fixed
         grid : dict of (A, B, N) or (A, B, N, "log"), optional
-            Values of any other parameter, by the names that JSON has: healing_time=10:1000:30log,
-            and of one interface residual_strength_2=1e-4:1e-2:20log; of a ``system`` any of its
-            own, which may be negative: two parameters vary at most, V_H, then K, then these in
-            their order, the first fastest
+            Values of any other parameter by name: healing_time=10:1000:30log, of one interface
+            residual_strength_2=1e-4:1e-2:20log, of a ``system`` any parameter, which may be
+            negative. Repeatable: two parameters vary at most, in the order V_H, K, then these, the
+            first fastest
         surface : str, number or sequence, optional
-            Of a ``system``: the section whose returns tell the regime, STATE=VALUE, crossed
-            falling; or STATE, in the middle of what that state swings through after the transient
-            [default: the first state]. That of interfaces is tau_ss at the mean slip rate
+            With ``system``: the section whose returns give the regime, STATE=VALUE, crossed
+            falling; or STATE, at the middle of its range after the transient [default: the first
+            state]. For interfaces it is tau_ss at the mean slip rate
         start : str or sequence of float, optional
-            Of a ``system``: the values of all states in their order, where the first run of every
-            point starts [default: its table start]
+            With ``system``: the values of all states in order, where the first run of every point
+            starts [default: its table start]
         basin : bool, optional
-            A grid of starting states instead of one of parameters: which attractor each leads to,
-            at one V_H and K or of one ``system``
+            A grid of starting states instead of parameters: the attractor to which each leads, at
+            one V_H and K or for one ``system``
         state_1 : str, number or sequence, optional
-            With ``basin``: the values of psi1 to start from; or those of any state by its name, as
-            x=-2:2:50 of a ``system``, and stress, state_1 or state_2 of interfaces
+            With ``basin``: the starting values of psi1; or of any state by name, as x=-2:2:50 of a
+            ``system``, or stress, state_1 or state_2 of interfaces
         state_2 : str, number or sequence, optional
-            With ``basin``: the values of psi2 to start from, of a single interface those of
-            stress; or of any other state by its name
+            With ``basin``: the starting values of psi2, or of stress for a single interface; or of
+            any other state by name
         starts : int, optional
-            Starts at each point, a row for each: the first beside the symmetric steady state, the
-            second with equal interfaces, the third far from it, the others at random (``seed``).
-            Of a ``system`` the first is its start, the others lie at random around it, in each
-            state x within 1 + abs(x) [default: 1]
+            Number of starts at each point, with a row for each: the first beside the symmetric
+            steady state, the second with equal interfaces, the third far from it, the others at
+            random (``seed``). With ``system`` the first is its start, the others lie at random
+            around it, in each state x within 1 + |x| [default: 1]
         seed : int, optional
-            Seed of the random starts: the same seed gives the same rows [default: 1]
+            Seed of the random starts [default: 1]
         follow : bool, optional
-            Start each point on the attractor found at the one before along the first parameter:
-            shorter transients, and hysteresis shows
-        lyapunov : bool, optional
-            The largest Lyapunov exponent of every point, not only of those whose regime needs it
+            Start each point on the attractor found at the previous one along the first parameter:
+            shorter transients, and hysteresis is visible
+        curves : str or sequence of str, optional
+            Bifurcations to draw over the map, comma-separated, named as in locus, or none
+            [default: none]
+        threads : int, optional
+            Threads [default: one per processor]; rows do not depend on their number
         rtol : float, optional
             Relative local error tolerance [default: 1e-8]
+        lyapunov : bool, optional
+            Compute the largest Lyapunov exponent of every point, not only of those whose regime
+            needs it
         max_returns : int, optional
-            A point is undecided after so many returns to its section [default: 2000]
+            A point is undecided after this many returns to its section [default: 2000]
         max_steps : int, optional
-            A point is undecided after so many steps [default: 10000000]
-        threads : int, optional
-            Threads [default: one per processor]; rows do not depend on them
-        curves : str or sequence of str, optional
-            Bifurcations to draw over the map, comma-separated, as locus has them, or none
-            [default: none]
+            A point is undecided after this many steps [default: 10000000]
         progress : bool, optional
             Whether a long computation shows a bar, by tqdm [default: in a notebook and on a
             terminal].
@@ -797,7 +802,7 @@ class Commands:
         each_step: bool = False,
         progress: Optional[bool] = None,
     ) -> Fit:
-        r"""Friction parameters from laboratory data: velocity steps fitted by least squares, with errors and 95 % intervals.
+        """Friction parameters from laboratory data: velocity steps fitted by least squares, with errors and 95 % intervals.
 
         Parameters
         ----------
@@ -807,9 +812,9 @@ class Commands:
         states : int, optional
             State variables: 1 or 2 [default: 1]
         free : str or sequence of str, optional
-            Parameters that are fitted, comma-separated; also healing_time, residual_strength,
+            Parameters to fit, comma-separated; also healing_time, residual_strength,
             evolution_effect_2, slip_length_2, drift (a straight line, friction per metre), and
-            those of a law from a file. Those that have neither a value nor a default are fitted
+            those of a law from a file. Parameters with neither a value nor a default are fitted
             too [default: direct_effect,evolution_effect,slip_length,stiffness,reference_friction,
             with ``states`` 2 also evolution_effect_2,slip_length_2]
         evolution_effect_2 : float, optional
@@ -819,47 +824,46 @@ class Commands:
         stiffness : str, number or sequence, optional
             Stiffness of the apparatus, in Pa/m, or as friction per length: 0.003/um
         drift : float, optional
-            Slope of a straight line that is added, friction per metre of load-point displacement
+            Slope of an added straight line, friction per metre of load-point displacement
             [default: 0]
         program : str or sequence of (time, V_H) and ((begin, end), V_H), optional
             Velocity of the load point: T:V,T:V,... in s and m/s, T1-T2:V for a ramp, or FILE.csv;
-            times as in the record [default: the steps that its displacement shows]
+            times as in the record [default: steps detected from the displacement]
         load_point : str, number or sequence, optional
-            What moves the load point: the steps of its displacement, or recorded, all of it,
-            smoothed as friction follows it best [default: steps]
+            Motion of the load point: the steps of its displacement, or recorded, the whole
+            displacement, smoothed so that friction fits best [default: steps]
         time : str or int, optional
-            Column of the time, by name or number from 1 on; so the others
+            Column of the time, by name or number from 1; the same holds for the other columns
         displacement : str or int, optional
             Column of the displacement of the load point
         friction : str or int, optional
-            Column of the friction coefficient, or of the shear stress where its unit is one of
-            stress
+            Column of the friction coefficient, or of the shear stress if its unit is one of stress
         normal_stress_column : str or int, optional
             Column of the normal stress
         weights : str or int, optional
-            Column by which the squares of residuals are multiplied
-        from\_ : float, optional
+            Column of weights of the squared residuals
+        from_ : float, optional
             First time of the window in s, as in the record
         to : float, optional
             Last time of the window in s
         decimate : int, optional
-            Take one sample of so many [default: 1]
+            Use every N-th sample [default: 1]
         bounds : dict of (A, B) or (A, B, "log"), optional
-            Range of a parameter, NAME=A:B
+            Range of a parameter, NAME=A:B; repeatable
         loss : str, optional
-            How residuals count: linear (least squares), or soft-l1, huber or cauchy, which let
-            outliers count less [default: linear]
+            Loss function of the residuals: linear (least squares), or soft-l1, huber or cauchy,
+            which reduce the weight of outliers [default: linear]
         loss_scale : float, optional
-            Residuals that are large for such a loss, in friction [default: 3 times the scatter
-            from sample to sample]
+            Scale of a robust loss, in friction [default: 3 times the scatter from sample to
+            sample]
         intervals : str, number or sequence, optional
-            95 % intervals: by profile, or linear from the standard errors, which is quicker
+            95 % intervals: by profile, or linear from the standard errors, which is faster
             [default: profile]
         crosscheck : bool, optional
-            Compute the derivatives at the minimum once more by sensitivities of CVODES, and report
-            the largest difference
+            Recompute the derivatives at the minimum by sensitivities of CVODES, and report the
+            largest difference
         each_step : bool, optional
-            Fit each step of velocity by itself, too
+            Also fit each velocity step separately
         progress : bool, optional
             Whether a long computation shows a bar, by tqdm [default: in a notebook and on a
             terminal].

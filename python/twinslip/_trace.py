@@ -163,16 +163,14 @@ def _key(name: str) -> str:
 
 def _check_identifier(argument: str, name: object) -> str:
     if not isinstance(name, str):
-        raise ValueError(f"{argument}: {name!r} is no name, but of type {type(name).__name__}")
+        raise ValueError(f"{argument}: {name!r} is not a name, but of type {type(name).__name__}")
     if not re.fullmatch(r"[^\W\d]\w*", name) or not name.isidentifier():
         raise ValueError(
-            f"{argument}: {name!r} is no name, these are of letters, digits and _, and begin "
-            "with no digit"
+            f"{argument}: {name!r} is not a name: names have letters, digits and _, and do not begin "
+            "with a digit"
         )
     if name == "pi" or name in NAMES_OF_FUNCTIONS:
-        raise ValueError(
-            f"{argument}: {name!r} has a meaning of its own in formulas, and can't be given another"
-        )
+        raise ValueError(f"{argument}: {name!r} is reserved in formulas")
     return name
 
 

@@ -42,11 +42,15 @@ def options(command: str) -> dict[str, Option]:
     return {option.argument: option for option in every}
 
 
+#: Headings of the options that make a system.
+MODEL = ("Model", "SI units")
+
+
 @cache
 def model_options() -> dict[str, Option]:
     """The options that say what slides, by their names in Python."""
     every = options("orbit").items()
-    return {name: option for name, option in every if option.heading == "Model"}
+    return {name: option for name, option in every if option.heading in MODEL}
 
 
 def number(field: str, value: Any) -> str:

@@ -63,11 +63,11 @@ impl Call {
         }
     }
 
-    /// How far a command has come is shown on a terminal, or handed on.
+    /// Progress on standard error, or reported to the program that called.
     pub fn progress(&self, quiet: bool) -> Progress {
         match &self.outlet {
             Some(outlet) => Progress::handed_on(outlet.clone()),
-            None => Progress::new(quiet),
+            None => Progress::new(quiet, self.words.get(1).map_or("", String::as_str)),
         }
     }
 

@@ -84,7 +84,7 @@ impl CheckpointFile {
         }
         if let Some(name) = self.differs(&head.checkpoint_of) {
             return Err(Error::Input(format!(
-                "--checkpoint {}: it is of another run, as {name} differs; name another file, or delete it",
+                "--checkpoint {}: it belongs to another run, as {name} differs; name another file, or delete it",
                 self.path.display()
             )));
         }

@@ -470,7 +470,7 @@ impl<'a, R: CurveRow> ContinuationOut<'a, R> {
         }
         match self.special.iter().find(|&one| side(one)) {
             Some(one) => self.report.undecided(format_args!(
-                "to which side {} at {} bifurcates, as its coefficient is 0 within its error; other values of what is held decide",
+                "on which side {} at {} bifurcates, as its coefficient is 0 within its error; change the fixed parameters",
                 one.label().map_or("", Label::name),
                 one.place(&self.task.names, units)
             )),

@@ -1,6 +1,7 @@
 //! `twinslip integrate`.
 
 use super::call::Call;
+use super::fault;
 use super::report::{self, Report, unit_names};
 use super::stream::StreamOut;
 use super::words::{count, several, time};
@@ -12,8 +13,8 @@ use std::path::{Path, PathBuf};
 use twinslip::error::{Error, Result};
 use twinslip_output::{Format, Over, Place, RowList, object, plot, seven_digits};
 use twinslip_tasks::scene::{
-    Change, Described, IntegrateOptions, Keeping, ManyPlan, OutputOptions, Plan, Program, Quantity,
-    RunOutcome, TextModel, TextPlan, explain,
+    Change, Described, FaultSummary, IntegrateOptions, Keeping, ManyPlan, OutputOptions, Plan,
+    Program, Quantity, RunOutcome, TextModel, TextPlan, explain,
 };
 use twinslip_tasks::views::{self, Listed, Listing};
 
@@ -32,6 +33,10 @@ pub trait PlannedRun {
     /// The tables beside the rows.
     fn beside<'a>(&'a self, _: &'a RunOutcome) -> Beside<'a> {
         Beside::default()
+    }
+    /// The run of a fault in a few numbers.
+    fn fault(&self, _: &RunOutcome) -> Option<FaultSummary> {
+        None
     }
     /// How V_H changes on the way, where it does.
     fn program(&self) -> Option<&Program>;
@@ -72,7 +77,7 @@ pub fn run(options: &IntegrateOptions, call: &Call) -> Result<Ending> {
     }
     if options.checkpoint.is_some() {
         return Err(Error::Input(
-            "`checkpoint` is of runs of many interfaces: from 8 on that move on their own, or with `draw`".into(),
+            "`checkpoint` works only for runs of many interfaces: 8 or more without clusters, or with `draw`".into(),
         ));
     }
     // A program may say itself which V_H is the first.
@@ -126,6 +131,10 @@ impl PlannedRun for Plan {
             events: events.map(|events| Box::new(events) as _),
             participation: None,
         }
+    }
+
+    fn fault(&self, outcome: &RunOutcome) -> Option<FaultSummary> {
+        FaultSummary::new(self, outcome)
     }
 
     fn program(&self) -> Option<&Program> {
@@ -217,6 +226,9 @@ pub fn integrate(
         report.draw(path, &picture)?;
     }
     report.say(summary(&outcome, events, seconds));
+    if let Some(fault) = plan.fault(&outcome) {
+        report.say(fault::line(&fault, plan.system().units()));
+    }
     let complete = outcome.failure.is_none() && !outcome.stopped;
     let ended = report.ended(match outcome.failure {
         Some(error) => Err(error),
@@ -256,7 +268,7 @@ fn place(output: &OutputOptions, name: &str, asked: &Option<PathBuf>) -> Result<
         (Format::Json, None, _) | (Format::Table, None, None) => Ok(None),
         (_, Some(named), _) => Ok(Some((named, Format::Csv))),
         (Format::Csv, None, None) => Err(Error::Input(format!(
-            "--{name} needs a file of its own where rows go to standard output as CSV: --{name} FILE, or -o FILE, --format json or --format table"
+            "--{name} needs a separate file when rows go to standard output as CSV: --{name} FILE, or -o FILE, --format json or --format table"
         ))),
         (_, None, Some(file)) => {
             let mut beside = file.file_stem().unwrap_or_default().to_owned();
@@ -338,6 +350,8 @@ struct IntegrationResult<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     program: Option<Vec<Value>>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    summary: Option<Value>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     events: Option<Vec<Map<String, Value>>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     participation: Option<Vec<Map<String, Value>>>,
@@ -364,6 +378,7 @@ fn result<'a>(
         rows,
         last,
         program: plan.program().map(changes),
+        summary: plan.fault(outcome).map(|fault| fault::object(&fault)),
         events: objects(&beside.events),
         participation: objects(&beside.participation),
     }

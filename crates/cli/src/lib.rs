@@ -8,6 +8,7 @@ mod continuation;
 pub(crate) mod ensemble;
 mod equilibria;
 mod examples;
+mod fault;
 mod fit;
 mod general;
 mod integrate;
@@ -74,7 +75,8 @@ use twinslip_tasks::scene;
 /// Sliding modes of interacting frictional interfaces: friction laws, runs in time, equilibria, periodic orbits, return
 /// maps, branches and their bifurcations, maps of regimes.
 ///
-/// Everything is dimensionless (stress in a sigma, slip rate in V*, length in L, time in L/V*) unless --si is given.
+/// Everything is dimensionless (stress in a sigma, slip rate in V*, length in L, time in L/V*) unless --si or a value with a unit is given.
+/// Where standard error is no terminal, long runs report progress every ten seconds, or every TWINSLIP_PROGRESS seconds.
 /// Data goes to standard output or a file, messages to standard error.
 /// Exit status: 0 done; 1 the computation failed, rows so far are kept; 2 wrong usage or input; 3 a verdict is undecided.
 #[derive(Debug, Parser)]
@@ -88,22 +90,22 @@ struct CommandLine {
 enum CliCommand {
     #[command(flatten)]
     Compute(scene::Command),
-    /// A scene: one that is built in, such as fig12, or a file
+    /// Run a scene: a built-in one, such as fig12, or a file
     #[command(after_help = run::EXAMPLE)]
     Run(run::RunOptions),
-    /// Join the files of all parts of a sweep into the one that a single run would have written
+    /// Join the files of all parts of a sweep into the file that a single run would write
     #[command(after_help = merge::EXAMPLE)]
     Merge(merge::MergeOptions),
-    /// The whole paper: every figure, Table 1, a scorecard of what it says, and a report to read
+    /// Reproduce the paper: every figure, Table 1, a scorecard of its numbers, and a report
     #[command(after_help = reproduce::EXAMPLE)]
     Reproduce(reproduce::ReproduceOptions),
-    /// One figure of the paper, as CSV and SVG
+    /// Reproduce one figure of the paper, as CSV and SVG
     #[command(after_help = reproduce::FIGURE_EXAMPLE)]
     Figure(reproduce::FigureOptions),
-    /// A script that completes commands, options and names in a shell
+    /// Write a script for shell completion of commands, options and names
     #[command(after_help = shell::COMPLETIONS_EXAMPLE)]
     Completions(shell::CompletionsOptions),
-    /// Manual pages, one for each command
+    /// Write manual pages, one for each command
     #[command(after_help = shell::MAN_EXAMPLE)]
     Man(shell::ManOptions),
     /// The pages of the documentation on commands, columns and files, as Markdown
@@ -190,9 +192,21 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         let _ = write!(std::io::stdout(), "{help}");
         return ExitCode::SUCCESS;
     }
-    let implied = scene::implied(&words).map(OsString::from);
+    let plain = match scene::plain(&words) {
+        Ok(plain) => {
+            let quiet = words.iter().any(|word| word == "-q" || word == "--quiet");
+            if let Some(warning) = plain.warning().filter(|_| !quiet) {
+                say(format_args!("warning: {warning}"));
+            }
+            plain.applied(&arguments)
+        }
+        Err(sentence) => {
+            say(format_args!("error: {}", shortened(sentence)));
+            return ExitCode::from(WRONG_INPUT);
+        }
+    };
     let parsed = program
-        .try_get_matches_from(arguments.iter().cloned().chain(implied))
+        .try_get_matches_from(plain)
         .and_then(|matches| CommandLine::from_arg_matches(&matches));
     let line = match parsed {
         Ok(line) => line,
@@ -325,6 +339,9 @@ fn shortened(text: String) -> String {
 fn compute(command: &scene::Command, call: &Call) -> Result<Ending, Error> {
     if let Some(plan) = scene::EnsemblePlan::new(command)? {
         return ensemble::run(&plan, command, call);
+    }
+    if let Some(warning) = command.warning() {
+        call.say(format_args!("warning: {warning}"));
     }
     let ended = match command {
         scene::Command::Law(options) => law::run(options, call),

@@ -79,7 +79,7 @@ fn checkpoint_file(
     let format = Format::choose(options.output.format.as_deref(), Some(rows), false)?;
     if format != Format::Csv {
         return refused(
-            "only rows in CSV can be gone on with; leave out --format, and name a file that does not end in .json",
+            "only rows in CSV can be resumed; leave out --format, and name a file that does not end in .json",
         );
     }
     if rows == path {

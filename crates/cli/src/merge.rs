@@ -30,7 +30,7 @@ pub struct MergeOptions {
     /// Write the whole sweep to FILE; - is standard output
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// Say nothing but errors
+    /// No messages; errors are still shown
     #[arg(short, long)]
     quiet: bool,
 }
@@ -128,7 +128,7 @@ fn parts(files: &[PathBuf]) -> Result<Vec<(SweepPlan, &Path)>> {
         let (of, number, known) = first.get_or_insert_with(|| (plan.clone(), shard, path));
         if of.canonical != plan.canonical || number.of != shard.of {
             return Err(Error::Input(format!(
-                "{} and {} are of different sweeps: {}, part {number}; {}, part {shard}",
+                "{} and {} belong to different sweeps: {}, part {number}; {}, part {shard}",
                 known.display(),
                 path.display(),
                 of.canonical.join(" "),

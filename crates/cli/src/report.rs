@@ -118,7 +118,7 @@ impl<'a> Report<'a> {
             if let (Some(_), Format::Csv, Some(path)) =
                 (&report.file, report.format, report.place.path())
             {
-                interrupt::keeps(format!("go on with --resume {}", path.display()));
+                interrupt::keeps(format!("resume with --resume {}", path.display()));
             }
         };
         let Some(resumed) = resume else {
@@ -144,10 +144,10 @@ impl<'a> Report<'a> {
                 goes_on(&report);
                 Ok(report)
             }
-            (Format::Csv | Format::Table, None) => refused(": only a file can be gone on with"),
-            _ if report.place.path().is_none() => refused(": only a file can be gone on with"),
+            (Format::Csv | Format::Table, None) => refused(": only a file can be resumed"),
+            _ if report.place.path().is_none() => refused(": only a file can be resumed"),
             _ => refused(
-                ": only CSV can be gone on with; leave out --format, and name a file that does not end in .json",
+                ": only CSV can be resumed; leave out --format, and name a file that does not end in .json",
             ),
         }
     }

@@ -2,6 +2,7 @@
 
 use super::Ending;
 use super::call::Call;
+use super::progress::Progress;
 use super::report::sundials;
 use super::words::{count, time};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -27,13 +28,13 @@ pub const FIGURE_EXAMPLE: &str = "Example, fig07.csv, fig07.svg and fig07.png he
 /// `reproduce`: the paper's figures, Table 1, the scorecard and a report to read.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct ReproduceOptions {
-    /// Where all files go
+    /// Directory of all files
     #[arg(long, value_name = "DIR", default_value = "paper")]
     out: PathBuf,
-    /// Only some of it, comma-separated: fig01 to fig17, fig05-unfolded, fig06-unfolded, table1, scorecard
+    /// Only these parts, comma-separated: fig01 to fig17, fig05-unfolded, fig06-unfolded, table1, scorecard
     #[arg(long, value_name = "LIST")]
     only: Option<String>,
-    /// Compute again what an earlier run has left complete
+    /// Recompute also what an earlier run has completed
     #[arg(long)]
     force: bool,
     /// How.
@@ -47,7 +48,7 @@ pub struct FigureOptions {
     /// Its number in the paper, 1 to 17, or 5-unfolded or 6-unfolded; fig7 and fig07 mean the same
     #[arg(value_name = "N")]
     number: String,
-    /// Where the files go
+    /// Directory of the files
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
     /// How.
@@ -58,13 +59,13 @@ pub struct FigureOptions {
 /// What both share.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct Making {
-    /// Pictures as PNG too
+    /// Also write pictures as PNG
     #[arg(long)]
     png: bool,
     /// Threads [default: one per processor]; results do not depend on them
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
-    /// Say nothing but errors
+    /// No messages; errors are still shown
     #[arg(short, long)]
     quiet: bool,
 }
@@ -222,9 +223,10 @@ fn ending(done: Done, call: &Call) -> Result<Ending> {
     Ok(ending)
 }
 
-/// What is being made, on a terminal.
+/// Shows what is being made: as a bar on a terminal, elsewhere in lines.
 struct Bar<'a> {
     call: &'a Call,
+    lines: Option<Mutex<Progress>>,
     /// How many there are, and how many have ended.
     count: Mutex<(usize, usize)>,
     bar: ProgressBar,
@@ -234,7 +236,14 @@ struct Bar<'a> {
 
 impl<'a> Bar<'a> {
     fn new(quiet: bool, call: &'a Call) -> Self {
-        let bar = if quiet || call.outlet.is_some() || !std::io::stderr().is_terminal() {
+        let silent = quiet || call.outlet.is_some();
+        let terminal = std::io::stderr().is_terminal();
+        let lines = (!silent && !terminal).then(|| {
+            let mut progress = call.progress(quiet);
+            progress.begin("starting");
+            Mutex::new(progress)
+        });
+        let bar = if silent || !terminal {
             ProgressBar::hidden()
         } else {
             let style =
@@ -246,6 +255,7 @@ impl<'a> Bar<'a> {
         };
         Bar {
             call,
+            lines,
             count: Mutex::default(),
             bar,
             going: Mutex::default(),
@@ -266,7 +276,7 @@ impl<'a> Bar<'a> {
             }
             outlet.reached(count.1 as f64 / count.0.max(1) as f64);
         }
-        if self.bar.is_hidden() {
+        if self.bar.is_hidden() && self.lines.is_none() {
             return;
         }
         match told {
@@ -306,10 +316,19 @@ impl<'a> Bar<'a> {
 
     fn show(&self, going: &BTreeMap<String, String>) {
         let words: Vec<&str> = going.values().map(String::as_str).collect();
-        self.bar.set_message(words.join("; "));
+        let words = words.join("; ");
+        if let Some(lines) = &self.lines {
+            let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0));
+            let lines = lines.lock().expect("no thread panicked");
+            lines.reached_at(|| format!("{done} of {all}, {words}"));
+        }
+        self.bar.set_message(words);
     }
 
     fn finish(&self) {
+        if let Some(lines) = &self.lines {
+            lines.lock().expect("no thread panicked").finish();
+        }
         self.bar.finish_and_clear();
     }
 }

@@ -9,21 +9,30 @@ use twinslip_output::Place;
 use twinslip_tasks::scene::{Command, SceneFile, about, shipped, shipped_names};
 
 pub const EXAMPLE: &str =
-    "Example, the torus of the paper's Fig. 13, and what other scenes there are:
+    "Example, the torus of the paper's Fig. 13, the same at another stiffness, and the list of scenes:
   twinslip run fig13 -o fig13.csv --plot fig13.svg
+  twinslip run fig13 --set stiffness=0.19 --until 500
   twinslip run --list";
 
-/// `run`: a scene file, and what may be said anew.
+/// `run`: a scene, and the options that replace those of the scene.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct RunOptions {
-    /// The scene: the name of one that is built in, or a file: TOML with command = "integrate" (or another command) and that
+    /// The scene: the name of a built-in one, or a file: TOML with command = "integrate" (or another command) and that
     /// command's options by their own names
     #[arg(value_name = "SCENE", required_unless_present = "list")]
     scene: Option<PathBuf>,
-    /// Say which scenes are built in, and what each shows
+    /// Options of the scene's command, which replace those of the scene: --set K=0.1, --until 500, --rtol 1e-10
+    #[arg(
+        value_name = "OPTIONS",
+        trailing_var_arg = true,
+        allow_hyphen_values = true,
+        conflicts_with_all = ["list", "show"]
+    )]
+    options: Vec<String>,
+    /// List the built-in scenes, with what each shows
     #[arg(long)]
     list: bool,
-    /// Write the text of the scene instead of running it, as a beginning of one's own
+    /// Write the text of the scene instead of running it, to start a scene file from
     #[arg(long, conflicts_with = "list")]
     show: bool,
     /// Draw into FILE.svg or FILE.png
@@ -49,34 +58,24 @@ pub fn run(options: &RunOptions, call: &Call) -> Result<Ending> {
         };
     }
     let scene = read(path)?;
-    let (mut replaced, mut added) = (Vec::new(), Vec::new());
+    let mut given = Vec::new();
     let texts = [
         ("plot", text(&options.plot)),
         ("output", text(&options.output.output)),
         ("format", options.output.format.clone()),
     ];
     for (flag, value) in texts {
-        if let Some(value) = value {
-            replaced.push(flag);
-            added.push(format!("--{flag}={value}"));
-        }
-    }
-    if options.output.output.is_some() && options.output.format.is_none() {
-        // A new FILE has a format of its own, by its extension.
-        replaced.push("format");
+        given.extend(value.map(|value| format!("--{flag}={value}")));
     }
     let switches = [
         ("quiet", options.output.quiet),
         ("force", options.output.force),
         ("explain", options.output.explain),
     ];
-    for (flag, on) in switches {
-        if on {
-            replaced.push(flag);
-            added.push(format!("--{flag}"));
-        }
-    }
-    let command = Command::of_scene(&scene, &replaced, &added)?;
+    let on = switches.iter().filter(|(_, on)| *on);
+    given.extend(on.map(|(flag, _)| format!("--{flag}")));
+    given.extend(options.options.iter().cloned());
+    let command = Command::of_scene(&scene, &given)?;
     compute(&command, call).map_err(|error| match error {
         error @ (Error::Parameter { .. } | Error::Input(_)) => scene.locate(&error),
         error => error,

@@ -38,21 +38,21 @@ const MOST_USED: [(&str, &str); 9] = [
 const IN_SHORT: [(&str, &str); 9] = [
     (
         "box",
-        "Where the equilibria of a system are looked for: x=-5:5,y=0:1",
+        "Search box for the equilibria of a system: x=-5:5,y=0:1",
     ),
-    ("lyapunov", "With Lyapunov exponents"),
+    ("lyapunov", "Compute Lyapunov exponents"),
     ("output", "Write the numbers to FILE: .csv or .json"),
-    ("plot", "Draw it, as FILE.svg or FILE.png"),
-    ("range", "From where to where one of them varies"),
-    ("resume", "Go on with the run that FILE is of"),
+    ("plot", "Draw a picture, FILE.svg or FILE.png"),
+    ("range", "Range of one of them"),
+    ("resume", "Resume the interrupted run in FILE"),
     ("start", "A state at or near the orbit"),
     (
         "symmetry",
-        "Both interfaces move alike, or not: symmetric or asymmetric",
+        "Interfaces in phase or not: symmetric or asymmetric",
     ),
     (
         "system",
-        "A system of one's own from a file, or one that is built in: lorenz",
+        "A user-defined system from a file, or a built-in one: lorenz",
     ),
 ];
 /// Examples that are shown.

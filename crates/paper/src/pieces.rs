@@ -115,7 +115,7 @@ impl<'a> Pieces<'a> {
         self.going_on()?;
         let text = shipped(name).ok_or_else(|| not(name, "shipped"))?;
         let file = SceneFile::parse(&format!("{name}.toml"), text, &Command::program())?;
-        match Command::of_scene(&file, &[], &[])? {
+        match Command::of_scene(&file, &[])? {
             Command::Integrate(options) => self.run_of(name, Plan::new(&options)?),
             Command::Section(options) => self.map_of(name, SectionPlan::new(&options)?),
             Command::Branch(options) => match options.any_parameter()? {

@@ -47,7 +47,11 @@ pub fn run(options: &FitOptions, call: &Call) -> Result<Ending> {
     let mut progress = report.progress();
     let mut found = Vec::with_capacity(plan.laws.len());
     for (i, law) in plan.laws.iter().enumerate() {
-        progress.reached(i as f64 / plan.laws.len() as f64);
+        let number = match plan.laws.len() {
+            1 => String::new(),
+            all => format!(", {} of {all}", i + 1),
+        };
+        progress.begin(&format!("fitting the law {}{number}", law.name));
         found.push(fitted(&plan, law, options)?);
     }
     // The law with the most information first.

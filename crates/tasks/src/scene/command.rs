@@ -1,7 +1,6 @@
 //! What a scene file or a command line asks for.
 
 use super::continuation::{BranchOptions, LocusOptions};
-use super::ensemble::implied;
 use super::file::SceneFile;
 use super::fit::FitOptions;
 use super::options::{
@@ -10,6 +9,7 @@ use super::options::{
 use super::sweep::SweepOptions;
 use super::system::{System, damping};
 use super::units::Units;
+use super::words::{merged, plain};
 use clap::{CommandFactory, Parser, Subcommand};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -87,24 +87,23 @@ impl Command {
         SceneLine::command()
     }
 
-    /// A scene's command line, parsed like one that was typed; flags in `replaced` are left out, and those in `added` are put in.
+    /// A scene's command line, parsed like one that was typed, with the options of its command that are given beside it.
     ///
     /// # Errors
     /// [`Error::Input`] with file and line.
-    pub fn of_scene(scene: &SceneFile, replaced: &[&str], added: &[String]) -> Result<Self> {
+    pub fn of_scene(scene: &SceneFile, given: &[String]) -> Result<Self> {
         let mut arguments = vec!["twinslip".to_owned()];
-        arguments.extend(scene.arguments(replaced));
-        arguments.extend(added.iter().cloned());
-        Command::of_words(&arguments).map_err(|sentence| scene.locate(&Error::Input(sentence)))
+        arguments.extend(scene.arguments(&[]));
+        let arguments = merged(&Command::program(), &arguments, given);
+        let command = arguments.and_then(|arguments| Command::of_words(&arguments));
+        command.map_err(|sentence| scene.locate(&Error::Input(sentence)))
     }
 
     /// A command line, the name of the program first; what is wrong with it as one sentence.
     ///
     /// Only the options of the command that it names are made, and those once: that takes longer than a short run.
     pub fn of_words(words: &[String]) -> Result<Self, String> {
-        let mut words = words.to_vec();
-        words.extend(implied(&words).map(str::to_owned));
-        let words = &words[..];
+        let words = &plain(words)?.applied(words)[..];
         let parsed = match words.get(1).map_or("", String::as_str) {
             "law" => options(words).map(Command::Law),
             "integrate" => options(words).map(Command::Integrate),

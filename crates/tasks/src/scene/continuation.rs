@@ -21,14 +21,14 @@ pub struct ContinuationOptions {
     /// Factor on the limits of continuation steps: below 1 there are more points, above 1 fewer
     #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = number, allow_negative_numbers = true)]
     pub step_limit: f64,
-    /// How many points there may be, of all branches or curves together; beyond is a failure, and the points are kept
+    /// Upper limit on the number of points of all branches or curves together; beyond it the command fails and the points are kept
     #[arg(long, value_name = "N", default_value_t = MAX_POINTS)]
     pub max_points: usize,
     /// Relative accuracy of special points, and of all points of a curve
     #[arg(long, value_name = "X", default_value = "1e-11", value_parser = number, allow_negative_numbers = true)]
     pub tolerance: f64,
-    /// Compute each special point of orbits once more with a second method and report the difference [METHOD: cvode-adams
-    /// unless given; rodas5p in a build without SUNDIALS]
+    /// Recompute each special point of orbits with a second method and report the difference [default METHOD: cvode-adams; rodas5p in a
+    /// build without SUNDIALS]
     #[arg(long, value_name = "METHOD", num_args = 0..=1, default_missing_value = SECOND_METHOD, value_parser = Names::of(Choice::names()), hide_possible_values = true)]
     pub crosscheck: Option<String>,
 }
@@ -37,7 +37,7 @@ pub struct ContinuationOptions {
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(next_help_heading = "Search")]
 pub struct SearchOptions {
-    /// With --system, or a --law from a file: branches of equilibria begin at all in a box, a range for every state, and end
+    /// With --system or a --law from a file: branches of equilibria begin at all equilibria in a box, a range for every state, and end
     /// where they leave it: x=-10:10,y=0:5
     #[arg(
         id = "box",
@@ -46,11 +46,11 @@ pub struct SearchOptions {
         allow_hyphen_values = true
     )]
     pub within: Option<String>,
-    /// Branches of orbits begin at or near this point of an orbit, at --from: TAU,PSI1,PSI2, with --system the values of all states
-    /// in their order. Branches of equilibria of a --system begin near it [default: the file's table start]
+    /// Branches of orbits begin at or near this point of an orbit, at --from: TAU,PSI1,PSI2, or with --system the values of all states in
+    /// order. Branches of equilibria of a --system begin near it [default: the file's table start]
     #[arg(long, value_name = "START", allow_hyphen_values = true)]
     pub start: Option<String>,
-    /// With --start of an orbit: its period, roughly
+    /// With --start of an orbit: its approximate period
     #[arg(long, value_name = "T", value_parser = number, requires = "start", allow_negative_numbers = true)]
     pub period_guess: Option<f64>,
 }
@@ -62,7 +62,7 @@ impl SearchOptions {
         match self.within {
             None => Ok(()),
             Some(_) => Err(Error::Input(
-                "`box` is where equilibria of a `system` or a `law` from a file are looked for; of built-in laws all are found without it".into(),
+                "`box` limits the search for equilibria of a `system` or a `law` from a file; those of built-in laws are all found without it".into(),
             )),
         }
     }
@@ -83,7 +83,7 @@ impl SearchOptions {
 /// `branch`: equilibria or periodic orbits as a parameter varies.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct BranchOptions {
-    /// What is followed: equilibria or orbits; in a scene file the key `of`
+    /// What to follow: equilibria or orbits; in a scene file the key `of`
     #[arg(value_name = "equilibria|orbits", value_parser = Names::of(BranchKind::NAMES), hide_possible_values = true)]
     pub of: Option<String>,
     /// What slides, with the parameter that stays fixed: --stiffness, or --driving along stiffness.
@@ -92,8 +92,8 @@ pub struct BranchOptions {
     /// The uncertainty of a fit.
     #[command(flatten)]
     pub ensemble: EnsembleOptions,
-    /// What varies: driving (V_H), stiffness (K) or any other parameter by its name; of a system from a file any of its own
-    /// [default: driving]
+    /// The free parameter, NAME or NAME=A:B: driving (V_H), stiffness (K) or any other parameter by its name; for a system from a file any
+    /// of its parameters [default: driving]
     #[arg(
         long,
         value_name = "PARAMETER",
@@ -102,13 +102,13 @@ pub struct BranchOptions {
         help_heading = "Branch"
     )]
     pub along: Option<String>,
-    /// Where the branches begin [default: V_H = 1e-3 V*; K = 1e-3 a sigma/L; others have none]
+    /// Where the branches begin [default: V_H = 1e-3 V*; K = 1e-3 a sigma/L; required for other parameters]
     #[arg(long, value_name = "A", value_parser = number, allow_negative_numbers = true, help_heading = "Branch")]
     pub from: Option<f64>,
-    /// Where they end; it may be the smaller one [default: V_H = 1e6 V*; K = 1 a sigma/L]
+    /// Where they end; it may be below --from [default: V_H = 1e6 V*; K = 1 a sigma/L]
     #[arg(long, value_name = "B", value_parser = number, allow_negative_numbers = true, help_heading = "Branch")]
     pub to: Option<f64>,
-    /// symmetric (both interfaces alike), asymmetric or both
+    /// symmetric (both interfaces in phase), asymmetric or both
     #[arg(
         long,
         value_name = "NAME",
@@ -118,7 +118,7 @@ pub struct BranchOptions {
         help_heading = "Branch"
     )]
     pub symmetry: String,
-    /// Values of the parameter to land on exactly, comma-separated; their rows have the label UZ
+    /// Values of the free parameter to land on exactly, comma-separated; their rows have the label UZ
     #[arg(
         long,
         value_name = "V1,V2,...",
@@ -126,24 +126,24 @@ pub struct BranchOptions {
         help_heading = "Branch"
     )]
     pub at: Option<String>,
-    /// How many period doublings to follow: the branches of orbits with doubled period are computed too
+    /// Number of period doublings to follow: the branches of orbits with doubled period are computed too
     #[arg(long, value_name = "N", value_parser = count, default_value = "0", help_heading = "Branch")]
     pub doublings: usize,
+    /// Draw stress (and period) against the parameter, stable parts solid, as FILE.svg or FILE.png
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub plot: Option<PathBuf>,
+    /// Continue FILE, the CSV of an interrupted run of the same command: its complete branches are kept
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub resume: Option<PathBuf>,
+    /// Where results go.
+    #[command(flatten)]
+    pub output: OutputOptions,
     /// Where equilibria and orbits of a system from a file are looked for.
     #[command(flatten)]
     pub search: SearchOptions,
     /// How they are followed.
     #[command(flatten)]
     pub continuation: ContinuationOptions,
-    /// Continue FILE, the CSV of an interrupted run of the same command: its complete branches are kept
-    #[arg(long, value_name = "FILE", help_heading = "Output")]
-    pub resume: Option<PathBuf>,
-    /// Draw stress (and period) against the parameter, stable parts solid, as FILE.svg or FILE.png
-    #[arg(long, value_name = "FILE", help_heading = "Output")]
-    pub plot: Option<PathBuf>,
-    /// Where results go.
-    #[command(flatten)]
-    pub output: OutputOptions,
 }
 
 impl BranchOptions {
@@ -235,8 +235,8 @@ impl LocusOptions {
 /// `locus`: a curve of bifurcations in the plane of V_H and K.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct LocusOptions {
-    /// The bifurcation that is followed: pitchfork, saddle-node or hopf of equilibria; orbit-pitchfork, orbit-saddle-node,
-    /// period-doubling or torus of periodic orbits; in a scene file the key `of`
+    /// The bifurcation to follow: pitchfork, saddle-node or hopf of equilibria; orbit-pitchfork, orbit-saddle-node, period-doubling or
+    /// torus of periodic orbits; in a scene file the key `of`
     #[arg(value_name = "BIFURCATION", value_parser = Names::of(CurveChoice::NAMES), hide_possible_values = true)]
     pub of: Option<String>,
     /// What slides; both V_H and K vary and are not given.
@@ -245,7 +245,7 @@ pub struct LocusOptions {
     /// The uncertainty of a fit.
     #[command(flatten)]
     pub ensemble: EnsembleOptions,
-    /// symmetric (both interfaces alike), asymmetric or both, where there are both
+    /// symmetric (both interfaces in phase), asymmetric or both, where both exist
     #[arg(
         long,
         value_name = "NAME",
@@ -287,10 +287,10 @@ pub struct LocusOptions {
         help_heading = "Curve"
     )]
     pub at_stiffness: Option<String>,
-    /// Say at every point whether the bifurcation is supercritical or subcritical
+    /// Classify the bifurcation at every point as supercritical or subcritical
     #[arg(long, help_heading = "Curve")]
     pub criticality: bool,
-    /// The two parameters that vary, by their names [default: driving,stiffness]
+    /// The two free parameters by name, each with a range if needed: NAME1=A:B,NAME2=C:D [default: driving,stiffness]
     #[arg(
         id = "in",
         long = "in",
@@ -298,7 +298,7 @@ pub struct LocusOptions {
         help_heading = "Curve"
     )]
     pub plane: Option<String>,
-    /// NAME=A,B: the range of one of these; may be given again
+    /// Range of a free parameter, NAME=A:B; repeatable
     #[arg(
         long,
         value_name = "NAME=A,B",
@@ -306,7 +306,7 @@ pub struct LocusOptions {
         help_heading = "Curve"
     )]
     pub range: Vec<String>,
-    /// NAME=V1,V2,...: values of one of these to land on exactly, at every crossing; may be given again
+    /// Values of a free parameter to land on exactly at every crossing, NAME=V1,V2,...; repeatable
     #[arg(
         long,
         value_name = "NAME=V1,V2,...",
@@ -314,19 +314,19 @@ pub struct LocusOptions {
         help_heading = "Curve"
     )]
     pub at: Vec<String>,
+    /// Draw the curves in the plane of V_H and K as FILE.svg or FILE.png
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub plot: Option<PathBuf>,
+    /// Continue FILE, the CSV of an interrupted run of the same command: its complete curves are kept
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub resume: Option<PathBuf>,
+    /// Where results go.
+    #[command(flatten)]
+    pub output: OutputOptions,
     /// Where equilibria and orbits of a system from a file are looked for.
     #[command(flatten)]
     pub search: SearchOptions,
     /// How it is followed.
     #[command(flatten)]
     pub continuation: ContinuationOptions,
-    /// Continue FILE, the CSV of an interrupted run of the same command: its complete curves are kept
-    #[arg(long, value_name = "FILE", help_heading = "Output")]
-    pub resume: Option<PathBuf>,
-    /// Draw the curves in the plane of V_H and K as FILE.svg or FILE.png
-    #[arg(long, value_name = "FILE", help_heading = "Output")]
-    pub plot: Option<PathBuf>,
-    /// Where results go.
-    #[command(flatten)]
-    pub output: OutputOptions,
 }

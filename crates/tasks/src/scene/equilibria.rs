@@ -99,7 +99,7 @@ impl EquilibriaPlan {
         for (name, given) in [("box", &options.within), ("start", &options.start)] {
             if given.is_some() {
                 return Err(Error::Input(format!(
-                    "`{name}` is where steady states of a `system` or a `law` from a file are looked for; of built-in laws all are found without it"
+                    "`{name}` limits the search for steady states of a `system` or a `law` from a file; those of built-in laws are all found without it"
                 )));
             }
         }

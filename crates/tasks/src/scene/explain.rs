@@ -50,11 +50,17 @@ pub fn explain(plan: &Plan, keeping: Keeping) -> String {
     );
     line(
         "events",
-        plan.events.map_or_else(
+        plan.detected().map_or_else(
             || "off: `events` is not given".into(),
             |threshold| {
                 let how = location(plan.method.series());
-                format!("on: slip faster than V_H whose peak exceeds {threshold} V_H, by {how}")
+                let why = match plan.events {
+                    Some(_) => "",
+                    None => ", for the summary",
+                };
+                format!(
+                    "on: slip faster than V_H whose peak exceeds {threshold} V_H, by {how}{why}"
+                )
             },
         ),
     );
@@ -125,7 +131,7 @@ fn dense(plan: &Plan) -> String {
     if plan.needs_slip() {
         why.push("slip");
     }
-    if plan.events.is_some() {
+    if plan.detected().is_some() {
         why.push("events");
     }
     if plan.picture {

@@ -3,6 +3,7 @@
 //! Its keys are turned into the flags themselves, so a scene and a command line are read, checked and run by the same code.
 
 use super::ensemble::EnsembleFile;
+use super::words::with_unit;
 use clap::{Arg, ArgAction, Command};
 use std::fs::File;
 use std::io::Read;
@@ -237,6 +238,8 @@ impl Reader<'_> {
             DeValue::Integer(number) if number.radix() == 10 => number.as_str().to_owned(),
             DeValue::Float(number) => number.as_str().to_owned(),
             DeValue::String(text) if !numeric => text.to_string(),
+            // Its unit is read with those of flags.
+            DeValue::String(text) if with_unit(text).is_some() => text.to_string(),
             // What may be given again: NAME=VALUE for each, or NAME=V1,V2,... where that has commas of its own.
             DeValue::Table(entries) if matches!(option.get_action(), ArgAction::Append) => {
                 let lists = option.get_value_delimiter().is_none();
@@ -262,7 +265,8 @@ impl Reader<'_> {
         if text.is_empty() {
             return Err(self.wrong(&value.span(), format!("{name} is empty")));
         }
-        if numeric && !text.parse::<f64>().is_ok_and(f64::is_finite) {
+        let number = with_unit(&text).is_some() || text.parse().is_ok_and(f64::is_finite);
+        if numeric && !number {
             return Err(self.wrong(
                 &value.span(),
                 format!("{name} is {text}, but must be finite"),

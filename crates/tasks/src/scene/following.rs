@@ -137,8 +137,8 @@ pub(super) fn landings(
 pub(super) fn explain_symmetry(symmetry: Option<Symmetry>, interfaces: usize) -> String {
     let words = match symmetry {
         _ if interfaces == 1 => "a single interface has none; dimension 2",
-        None if interfaces > 2 => "both: all interfaces alike, and in clusters",
-        Some(_) if interfaces > 2 => "one: all interfaces alike, or in clusters",
+        None if interfaces > 2 => "both: all interfaces in phase, and in clusters",
+        Some(_) if interfaces > 2 => "one: all interfaces in phase, or in clusters",
         None => "both: symmetric in dimension 2, asymmetric in 3",
         Some(Symmetry::Symmetric) => "symmetric alone, in dimension 2; the mode across beside it",
         Some(Symmetry::Asymmetric) => "asymmetric alone, in dimension 3",

@@ -53,18 +53,20 @@ mod set;
 mod shipped;
 mod slip;
 mod stretch;
+mod summary;
 mod sweep;
 mod system;
 mod text;
 mod unequal;
 mod units;
+mod warnings;
+mod words;
 
 pub use branch::{BranchKind, BranchParameter, BranchPlan};
 pub use column::{CellValue, Column};
 pub use command::Command;
 pub use command::sentence;
 pub use continuation::{BranchOptions, ContinuationOptions, LocusOptions, SearchOptions};
-pub use ensemble::implied;
 pub use ensemble::{EnsembleFile, EnsembleOptions, EnsemblePlan, FittedParameter, FrictionFit};
 pub use equilibria::{AnyStability, ClassifiedEquilibria, ClassifiedEquilibrium, EquilibriaPlan};
 pub use event::SlipEvent;
@@ -100,6 +102,7 @@ pub use section::{
     section_columns,
 };
 pub use shipped::{about, shipped, shipped_laws, shipped_names, shipped_systems};
+pub use summary::{Criticality, FaultSummary, Spread};
 pub use sweep::{BasinStates, Moving, Shard, SweepLayout, SweepOptions, SweepPlan, Swept};
 pub use system::{Described, System};
 pub use text::{
@@ -109,3 +112,4 @@ pub use text::{
     text_columns, text_section_columns,
 };
 pub use units::{Quantity, TimeUnit, Units};
+pub use words::{Plain, plain};

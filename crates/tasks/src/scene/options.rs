@@ -9,14 +9,14 @@ use std::path::PathBuf;
 use twinslip::friction::AnyLaw;
 use twinslip::integrate::Choice;
 
-const START_HELP: &str = "TAU,PSI1,PSI2 (TAU,PSI for one interface), or near-symmetric[:EPS]: tau and psi1 at the \
-    symmetric steady state and psi2 = psi1 exp(EPS), EPS = 0.01 unless given, or -0.01 where psi2 would exceed 1; where the interfaces differ, \
-    psi of each at its own steady state at V_H/2, the second one times exp(EPS) [default: near-symmetric]. Of N interfaces or clusters one psi for \
-    each, or spread[:EPS[:SEED]]: psi of each at its steady state times exp(EPS z), z drawn between -1 and 1 [default from 8 interfaces on]. Of a system from a file: the values of all states in their order [default: its table start]";
+const START_HELP: &str = "Initial state: TAU,PSI1,PSI2 (TAU,PSI for one interface), or near-symmetric[:EPS]: tau and psi1 at the \
+    symmetric steady state and psi2 = psi1 exp(EPS), EPS = 0.01 by default, or -0.01 where psi2 would exceed 1; unequal interfaces start \
+    at their steady states at V_H/2, the second psi times exp(EPS) [default: near-symmetric]. For N interfaces or clusters: one psi \
+    each, or spread[:EPS[:SEED]], psi at the steady state times exp(EPS z) with z drawn between -1 and 1 [default from 8 interfaces on]. For a system from a file: all states in order [default: its table start]";
 
-const ORBIT_START_HELP: &str = "TAU,PSI1,PSI2 (TAU,PSI for one interface) at or near the orbit; near-symmetric[:EPS]; or \
-    hopf, for the branch from the nearest Hopf point along V_H. Without it the orbit is looked for. Of a system from a file: the \
-    values of all states in their order [default: its table start]";
+const ORBIT_START_HELP: &str = "A point on or near the orbit: TAU,PSI1,PSI2 (TAU,PSI for one interface); near-symmetric[:EPS]; or \
+    hopf, for the branch from the nearest Hopf point along V_H. By default the orbit is searched for. For a system from a file: \
+    all states in order [default: its table start]";
 
 /// The laws with their sources, for help.
 fn laws() -> String {
@@ -25,8 +25,8 @@ fn laws() -> String {
         .map(|(name, source)| format!("{name} {source}"))
         .collect();
     format!(
-        "Friction law, by the paper's equations or others: {}. Or a law of one's own: FILE.toml with its slip_rate, in tau and psi, \
-         its evolution, in v and psi, and its parameters",
+        "Friction law, with its equation in the paper or its source: {}; ageing is dieterich-ruina. Or a user-defined law: FILE.toml with \
+         slip_rate (in tau and psi), evolution (in v and psi) and parameters",
         listed(&laws)
     )
 }
@@ -65,12 +65,12 @@ pub struct SlabOptions {
     /// Friction law.
     #[arg(long, value_name = "NAME", help = laws(), default_value = "spinodal", value_parser = Names::of(AnyLaw::NAMES), hide_possible_values = true)]
     pub law: String,
-    /// Number N of frictional interfaces, which all share the stress: up to 7 that move on their own, up to 600 in equilibria, up to
-    /// millions in integrate [default: as many as in all clusters, or 2]
+    /// Number N of frictional interfaces, all under the same stress: up to 7 independent ones, up to 600 in equilibria, up to millions in
+    /// integrate [default: the sum of --clusters, or 2]
     #[arg(long, value_name = "N")]
     pub interfaces: Option<u32>,
-    /// Equal interfaces in clusters that move alike: how many there are in each, which together are N. States, slip rates and starts
-    /// then have one number a cluster
+    /// Group equal interfaces into clusters that move together: the sizes of the clusters, N in total. States, slip rates and starts then
+    /// have one number per cluster
     #[arg(long, value_name = "N1,N2,...")]
     pub clusters: Option<String>,
     /// Healing time R = t** V*/L [default: 100 L/V*; t** in s with --si]
@@ -91,27 +91,27 @@ pub struct SlabOptions {
     /// Radiation damping eta V*/(a sigma): tau - eta v stands in place of tau in the law [default: 0; eta in Pa s/m with --si]
     #[arg(long, value_name = "ETA", value_parser = number, allow_negative_numbers = true, conflicts_with_all = ["shear_modulus", "shear_wave_speed"])]
     pub damping: Option<f64>,
-    /// All input and output in SI units
-    #[arg(long)]
+    /// All input and output in SI units; implied by a value with a unit, such as 10um, 50MPa, 1nm/s or 500year
+    #[arg(long, help_heading = "SI units")]
     pub si: bool,
+    /// With --si: L in m [default: 0.9e-6]
+    #[arg(long, help_heading = "SI units", value_name = "L", requires = "si", value_parser = number, allow_negative_numbers = true)]
+    pub slip_length: Option<f64>,
+    /// With --si: sigma in Pa; it only scales stress and stiffness, and the paper gives none [default: 1e6]
+    #[arg(long, help_heading = "SI units", value_name = "sigma", requires = "si", value_parser = number, allow_negative_numbers = true)]
+    pub normal_stress: Option<f64>,
+    /// With --si: V* in m/s [default: 1e-6]
+    #[arg(long, help_heading = "SI units", value_name = "V*", requires = "si", value_parser = number, allow_negative_numbers = true)]
+    pub reference_rate: Option<f64>,
+    /// With --si: unit of times in and out (run, period, and the state of laws in which it is a time); parameters stay in SI
+    #[arg(long, help_heading = "SI units", value_name = "UNIT", requires = "si", default_value = "s", value_parser = Names::of(TimeUnit::NAMES))]
+    pub time_unit: String,
     /// With --si: G in Pa, for the damping G/(2 c_s)
-    #[arg(long, value_name = "G", requires_all = ["si", "shear_wave_speed"], value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, help_heading = "SI units", value_name = "G", requires_all = ["si", "shear_wave_speed"], value_parser = number, allow_negative_numbers = true)]
     pub shear_modulus: Option<f64>,
     /// With --si: c_s in m/s, for the damping G/(2 c_s)
-    #[arg(long, value_name = "c_s", requires_all = ["si", "shear_modulus"], value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, help_heading = "SI units", value_name = "c_s", requires_all = ["si", "shear_modulus"], value_parser = number, allow_negative_numbers = true)]
     pub shear_wave_speed: Option<f64>,
-    /// With --si: L in m [default: 0.9e-6]
-    #[arg(long, value_name = "L", requires = "si", value_parser = number, allow_negative_numbers = true)]
-    pub slip_length: Option<f64>,
-    /// With --si: V* in m/s [default: 1e-6]
-    #[arg(long, value_name = "V*", requires = "si", value_parser = number, allow_negative_numbers = true)]
-    pub reference_rate: Option<f64>,
-    /// With --si: unit of times in and out (run, period, state of laws in which it is a time); parameters stay in SI
-    #[arg(long, value_name = "UNIT", requires = "si", default_value = "s", value_parser = Names::of(TimeUnit::NAMES))]
-    pub time_unit: String,
-    /// With --si: sigma in Pa; the paper states none, and it only scales stress and stiffness [default: 1e6]
-    #[arg(long, value_name = "sigma", requires = "si", value_parser = number, allow_negative_numbers = true)]
-    pub normal_stress: Option<f64>,
 }
 
 /// How accurately and by which method.
@@ -127,10 +127,10 @@ pub struct NumericsOptions {
     /// Absolute local error tolerance of tau and ln psi [default: as --rtol]
     #[arg(long, value_name = "X", value_parser = number, allow_negative_numbers = true)]
     pub atol: Option<f64>,
-    /// Largest step in time, for what is shorter than a step: a pulse that begins and ends within one is seen by no method
+    /// Largest time step, for features shorter than a step: no method sees a pulse that begins and ends within one step
     #[arg(long, value_name = "H", value_parser = number, allow_negative_numbers = true)]
     pub max_step: Option<f64>,
-    /// Give up after so many steps
+    /// Stop after this many steps
     #[arg(long, value_name = "N", value_parser = count, default_value_t = twinslip::integrate::MAX_STEPS)]
     pub max_steps: usize,
 }
@@ -139,19 +139,19 @@ pub struct NumericsOptions {
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(next_help_heading = "Output")]
 pub struct OutputOptions {
-    /// table, csv or json [default: by the ending of FILE; else table on a terminal, csv into a file or pipe]
+    /// table, csv or json [default: by the extension of FILE; else table on a terminal, csv into a file or pipe]
     #[arg(long, value_name = "FORMAT", value_parser = Names::of(["table", "csv", "json"]), hide_possible_values = true)]
     pub format: Option<String>,
     /// Write data to FILE; - is standard output
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// Replace FILE even if it holds an unfinished run, or what this program has not written
+    /// Replace FILE even if it holds an unfinished run or was not written by this program
     #[arg(long)]
     pub force: bool,
-    /// No messages, no progress, no summary; errors are still shown
+    /// No messages, progress or summary; errors are still shown
     #[arg(short, long)]
     pub quiet: bool,
-    /// Before computing, say on standard error what will be computed, how and why
+    /// Before computing, print the plan on standard error: what is computed, how and why
     #[arg(long)]
     pub explain: bool,
 }
@@ -197,28 +197,8 @@ pub struct IntegrateOptions {
         help = START_HELP
     )]
     pub start: Option<String>,
-    /// A constant that each of many interfaces has of its own, drawn between A and B, NAME=A:B, or by its logarithm, NAME=A:Blog; may
-    /// be given again. NAME is healing_time, residual_strength, evolution_effect, reference_friction or slip_length
-    #[arg(
-        long,
-        value_name = "NAME=A:B",
-        value_delimiter = ',',
-        allow_hyphen_values = true,
-        help_heading = "Run"
-    )]
-    pub draw: Vec<String>,
-    /// With --draw: another seed, other constants
-    #[arg(
-        long,
-        value_name = "SEED",
-        default_value_t = 1,
-        requires = "draw",
-        help_heading = "Run"
-    )]
-    pub seed: u64,
-    /// How V_H changes on the way, from --driving on: "T:V,T:V,..." for steps to V at T, where V = 0 is a hold, and "T1-T2:V" for a
-    /// ramp; or FILE.csv with the columns time, driving and, for ramps, until. Rows then have a column driving, and stand at both
-    /// sides of a change
+    /// Changes of V_H, which begins at --driving: "T:V,T:V,..." for steps to V at T, where V = 0 is a hold, and "T1-T2:V" for a ramp; or
+    /// FILE.csv with the columns time, driving and, for ramps, until. Rows then have a column driving and stand on both sides of a change
     #[arg(
         long,
         value_name = "PROGRAM",
@@ -226,67 +206,85 @@ pub struct IntegrateOptions {
         help_heading = "Run"
     )]
     pub program: Option<String>,
-    /// End of the run; it begins at 0
+    /// End time of the run, which begins at 0
     #[arg(long, value_name = "T", value_parser = number, allow_negative_numbers = true, help_heading = "Run")]
     pub until: Option<f64>,
-    /// N rows equally spaced in time, both ends included, instead of one at every step
+    /// N rows equally spaced in time, both ends included, instead of one per step
     #[arg(long, value_name = "N", value_parser = count, conflicts_with_all = ["every", "final_only"], help_heading = "Run")]
     pub points: Option<usize>,
     /// A row at every multiple of DT
     #[arg(long, value_name = "DT", value_parser = number, allow_negative_numbers = true, conflicts_with = "final_only", help_heading = "Run")]
     pub every: Option<f64>,
-    /// Only the last row: nothing else is stored, and without slip columns nothing but steps is computed
+    /// Only the last row: nothing else is stored, and without slip columns nothing but the steps is computed
     #[arg(long, conflicts_with = "plot", help_heading = "Run")]
     pub final_only: bool,
-    /// Only these columns, comma-separated; what is not asked for is not computed
+    /// Only these columns, comma-separated; columns left out are not computed
     #[arg(long, value_name = "NAMES", help_heading = "Run")]
     pub columns: Option<String>,
-    /// Find stick-slip events: times between a maximum and a minimum of stress, when the interfaces together slip faster
-    /// than V_H. Of three interfaces and more: times in which at least one slips faster than a threshold. In JSON they are result.events; a table on standard output is followed by theirs; in CSV they go to FILE, or
-    /// beside -o RUN.csv to RUN.events.csv
+    /// Find stick-slip events. With one or two interfaces: from a maximum of stress to the next minimum, while the interfaces together slip
+    /// faster than V_H. With three or more: while at least one slips faster than a threshold. In JSON they are result.events; a table on
+    /// standard output is followed by a table of events; in CSV they go to FILE, or beside -o RUN.csv to RUN.events.csv
     #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "", value_parser = path, help_heading = "Run")]
     pub events: Option<PathBuf>,
-    /// Count events whose total slip rate exceeds X times V_H [default: 2]; with --program times the V_H of that moment, so that a
-    /// hold, in which all slip is faster than V_H = 0, counts as one. Of three interfaces and more each slips while it is faster than X times
-    /// V_H/N [default: 10]
+    /// Count events whose total slip rate exceeds X times V_H [default: 2]; with --program, X times the current V_H, so that a hold (V_H =
+    /// 0), in which all slip is faster, counts as one event. With three or more interfaces, an interface slips while it is faster than X
+    /// times V_H/N [default: 10]
     #[arg(long, value_name = "X", requires = "events", value_parser = number, allow_negative_numbers = true, help_heading = "Run")]
     pub event_threshold: Option<f64>,
-    /// With --events of three interfaces and more: in how many events each interface slips, how far, and its constants that are drawn. In
-    /// JSON these are result.participation; else they go to FILE, or beside -o RUN.csv to RUN.participation.csv
-    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "", value_parser = path, requires = "events", help_heading = "Run")]
-    pub participation: Option<PathBuf>,
-    /// Of many interfaces, with rows in a CSV file: save the run in FILE again and again. A run that was killed goes on from there to the
-    /// same bytes when the same command is given again; when it is complete, FILE is removed
-    #[arg(long, value_name = "FILE", value_parser = path, help_heading = "Run")]
-    pub checkpoint: Option<PathBuf>,
-    /// Steps between two checkpoints
-    #[arg(long, value_name = "N", value_parser = count, default_value_t = 1000, requires = "checkpoint", help_heading = "Run")]
-    pub checkpoint_steps: usize,
-    /// Estimate the error of the last row by a second run with 10,000 times tighter tolerances, below --rtol 1e-12 by the
-    /// reference
-    #[arg(long, help_heading = "Run")]
-    pub estimate_error: bool,
-    /// With --estimate-error: by a run in double-double arithmetic, of 31 digits, some hundred times slower than taylor
-    #[arg(long, requires = "estimate_error", help_heading = "Run")]
-    pub reference: bool,
+    /// Draw stress, states and slip rates against time, and the phase plane, as FILE.svg or FILE.png
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub plot: Option<PathBuf>,
+    /// Where results go.
+    #[command(flatten)]
+    pub output: OutputOptions,
     /// By which method.
     #[command(flatten)]
     pub numerics: NumericsOptions,
-    /// Draw stress, states and slip rates in time, and the phase plane, as FILE.svg or FILE.png
-    #[arg(long, value_name = "FILE", help_heading = "Output")]
-    pub plot: Option<PathBuf>,
-    /// With --events of three interfaces and more: draw how many events there are of each size, and how many interfaces slip in each, as
-    /// FILE.svg or FILE.png
+    /// Estimate the error of the last row by a second run with tolerances 10,000 times tighter, or by --reference below --rtol 1e-12
+    #[arg(long, help_heading = "Numerics")]
+    pub estimate_error: bool,
+    /// With --estimate-error: make the second run in double-double arithmetic (31 digits), some hundred times slower than taylor
+    #[arg(long, requires = "estimate_error", help_heading = "Numerics")]
+    pub reference: bool,
+    /// Draw a constant of each of many interfaces at random between A and B, NAME=A:B, or log-uniformly, NAME=A:Blog; repeatable. NAME is
+    /// healing_time, residual_strength, evolution_effect, reference_friction or slip_length
+    #[arg(
+        long,
+        value_name = "NAME=A:B",
+        value_delimiter = ',',
+        allow_hyphen_values = true,
+        help_heading = "Many interfaces"
+    )]
+    pub draw: Vec<String>,
+    /// With --draw: the random seed
+    #[arg(
+        long,
+        value_name = "SEED",
+        default_value_t = 1,
+        requires = "draw",
+        help_heading = "Many interfaces"
+    )]
+    pub seed: u64,
+    /// With --events of three or more interfaces: for each interface the number of events in which it slips, its slip, and its drawn
+    /// constants. In JSON these are result.participation; else they go to FILE, or beside -o RUN.csv to RUN.participation.csv
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "", value_parser = path, requires = "events", help_heading = "Many interfaces")]
+    pub participation: Option<PathBuf>,
+    /// With --events of three or more interfaces: draw the number of events of each size, and the number of interfaces that slip in each,
+    /// as FILE.svg or FILE.png
     #[arg(
         long,
         value_name = "FILE",
         requires = "events",
-        help_heading = "Output"
+        help_heading = "Many interfaces"
     )]
     pub plot_events: Option<PathBuf>,
-    /// Where results go.
-    #[command(flatten)]
-    pub output: OutputOptions,
+    /// For many interfaces with rows in a CSV file: save the run in FILE at intervals. The same command resumes a killed run from FILE and
+    /// gives the same bytes; FILE is removed when the run is complete
+    #[arg(long, value_name = "FILE", value_parser = path, help_heading = "Many interfaces")]
+    pub checkpoint: Option<PathBuf>,
+    /// Steps between two checkpoints
+    #[arg(long, value_name = "N", value_parser = count, default_value_t = 1000, requires = "checkpoint", help_heading = "Many interfaces")]
+    pub checkpoint_steps: usize,
 }
 
 /// `section`: the return map of a run.
@@ -304,35 +302,35 @@ pub struct SectionOptions {
         help = START_HELP
     )]
     pub start: Option<String>,
-    /// The section of the return map: stress=VALUE, or stress=auto for the steady stress at the mean slip rate, tau_ss(V_H/2)
-    /// of two interfaces [default: stress=auto]. With --system STATE=VALUE, which must be given, and with a --law from a file either
+    /// Section of the return map: stress=VALUE, or stress=auto for the steady stress at the mean slip rate, tau_ss(V_H/2) of two interfaces
+    /// [default: stress=auto]. With --system STATE=VALUE (required); with a --law from a file either form
     #[arg(long, value_name = "SURFACE", help_heading = "Run")]
     pub surface: Option<String>,
-    /// Count returns where the stress (with --system the state) rises through the section, instead of where it falls
+    /// Count returns where the stress (with --system the state) rises through the section; by default where it falls
     #[arg(long, help_heading = "Run")]
     pub upwards: bool,
-    /// Returns that are recorded
+    /// Number of returns to record
     #[arg(long, value_name = "N", value_parser = count, default_value_t = 1000, help_heading = "Run")]
     pub returns: usize,
-    /// Returns that are skipped before, so that the run settles
+    /// Number of returns to skip first, as a transient
     #[arg(long, value_name = "M", value_parser = count, default_value_t = 1000, help_heading = "Run")]
     pub skip: usize,
     /// Longest time to wait for a return [default: 1e4 L/V* + 1000/(K V_H); 1e4 with --system]
     #[arg(long, value_name = "T", value_parser = number, allow_negative_numbers = true, help_heading = "Run")]
     pub patience: Option<f64>,
-    /// Lyapunov exponents: of a periodic orbit by its multipliers, else along as many returns of a run of their own; without them
+    /// Compute Lyapunov exponents: of a periodic orbit from its multipliers, else along a further run of as many returns; without them
     /// chaos is not recognised
     #[arg(long, help_heading = "Run")]
     pub lyapunov: bool,
-    /// By which method.
-    #[command(flatten)]
-    pub numerics: NumericsOptions,
     /// Draw v_1 + v_2 at each return against the one before, and the states at the returns, as FILE.svg or FILE.png
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub plot: Option<PathBuf>,
     /// Where results go.
     #[command(flatten)]
     pub output: OutputOptions,
+    /// By which method.
+    #[command(flatten)]
+    pub numerics: NumericsOptions,
 }
 
 /// `equilibria`: all steady states at a driving velocity.
@@ -344,8 +342,8 @@ pub struct EquilibriaOptions {
     /// The uncertainty of a fit.
     #[command(flatten)]
     pub ensemble: EnsembleOptions,
-    /// With --system, or a --law from a file: all steady states in a box, a range for every state: x=-10:10,y=0:5 [default of a law:
-    /// what its steady states have at rates from V_H/1e6 to V_H]
+    /// With --system or a --law from a file: all steady states in a box, a range for every state: x=-10:10,y=0:5 [default for a law: its
+    /// steady states at rates from V_H/1e6 to V_H]
     #[arg(
         id = "box",
         long = "box",
@@ -354,8 +352,8 @@ pub struct EquilibriaOptions {
         help_heading = "Model"
     )]
     pub within: Option<String>,
-    /// With --system: near which values of all states, in their order [default: its table start]. With a --law from a file TAU,PSI1,PSI2
-    /// or near-symmetric:EPS. With --draw as in integrate [default: near-symmetric:0]
+    /// With --system: search near this point, the values of all states in order [default: its table start]. With a --law from a file
+    /// TAU,PSI1,PSI2 or near-symmetric:EPS. With --draw as in integrate [default: near-symmetric:0]
     #[arg(
         long,
         value_name = "START",
@@ -364,29 +362,6 @@ pub struct EquilibriaOptions {
         help_heading = "Model"
     )]
     pub start: Option<String>,
-    /// A constant that each of many interfaces has of its own, drawn as in integrate: NAME=A:B, or by its logarithm NAME=A:Blog; may be
-    /// given again. One steady state of possibly many is found, that which Newton's method comes to from --start, with the number of
-    /// eigenvalues that grow; all are found for equal interfaces
-    #[arg(
-        long,
-        value_name = "NAME=A:B",
-        value_delimiter = ',',
-        allow_hyphen_values = true,
-        help_heading = "Model"
-    )]
-    pub draw: Vec<String>,
-    /// With --draw: another seed, other constants
-    #[arg(
-        long,
-        value_name = "SEED",
-        default_value_t = 1,
-        requires = "draw",
-        help_heading = "Model"
-    )]
-    pub seed: u64,
-    /// kinsol or newton, both to the same digits [default: kinsol; newton in a build without SUNDIALS]
-    #[arg(long, value_name = "NAME", conflicts_with = "system", value_parser = Names::of(["kinsol", "newton"]), hide_possible_values = true, help_heading = "Numerics")]
-    pub solver: Option<String>,
     /// Draw the states against the stress, filled where stable, and the eigenvalues, with --draw what each interface does against its
     /// constants, as FILE.svg or FILE.png
     #[arg(long, value_name = "FILE", help_heading = "Output")]
@@ -394,6 +369,29 @@ pub struct EquilibriaOptions {
     /// Where results go.
     #[command(flatten)]
     pub output: OutputOptions,
+    /// kinsol or newton; both give the same digits [default: kinsol; newton in a build without SUNDIALS]
+    #[arg(long, value_name = "NAME", conflicts_with = "system", value_parser = Names::of(["kinsol", "newton"]), hide_possible_values = true, help_heading = "Numerics")]
+    pub solver: Option<String>,
+    /// Draw a constant of each of many interfaces at random, as in integrate: NAME=A:B, or log-uniformly NAME=A:Blog; repeatable. Finds one
+    /// steady state of possibly many, to which Newton's method converges from --start, and its number of growing eigenvalues; with equal
+    /// interfaces all are found
+    #[arg(
+        long,
+        value_name = "NAME=A:B",
+        value_delimiter = ',',
+        allow_hyphen_values = true,
+        help_heading = "Many interfaces"
+    )]
+    pub draw: Vec<String>,
+    /// With --draw: the random seed
+    #[arg(
+        long,
+        value_name = "SEED",
+        default_value_t = 1,
+        requires = "draw",
+        help_heading = "Many interfaces"
+    )]
+    pub seed: u64,
 }
 
 /// `orbit`: a periodic orbit.
@@ -402,7 +400,8 @@ pub struct OrbitOptions {
     /// What slides.
     #[command(flatten)]
     pub model: ModelOptions,
-    /// symmetric (both interfaces move alike) or asymmetric; without meaning where they differ [default: symmetric, but without a start and where that orbit is not stable what else runs settle on]
+    /// symmetric (both interfaces in phase) or asymmetric; not used for unequal interfaces [default: symmetric; without --start, where that
+    /// orbit is unstable, the orbit on which runs settle]
     #[arg(
         long,
         value_name = "NAME",
@@ -421,17 +420,24 @@ pub struct OrbitOptions {
         help = ORBIT_START_HELP
     )]
     pub start: Option<String>,
-    /// The period, roughly; with it no shorter cycle is taken instead
+    /// Approximate period; shorter cycles are then not accepted
     #[arg(long, value_name = "T", value_parser = number, allow_negative_numbers = true, help_heading = "Orbit")]
     pub period_guess: Option<f64>,
-    /// Rows over one period, as those of integrate: N equally spaced in time, from result.orbit.point back to it. A table or CSV then
-    /// holds these, and in JSON they are result.rows
+    /// Rows over one period, as in integrate: N equally spaced in time, from result.orbit.point back to it. A table or CSV then holds these
+    /// rows, and JSON has them as result.rows
     #[arg(long, value_name = "N", value_parser = count, help_heading = "Orbit")]
     pub points: Option<usize>,
-    /// A second method that computes the orbit again, or none [default: cvode-adams; rodas5p in a build without SUNDIALS]
-    #[arg(long, value_name = "METHOD", help_heading = "Orbit")]
+    /// Draw stress, states and slip rates (for a user-defined system all states) over one period, and the phase plane, as FILE.svg or
+    /// FILE.png
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub plot: Option<PathBuf>,
+    /// Where results go.
+    #[command(flatten)]
+    pub output: OutputOptions,
+    /// Second method that computes the orbit again as a cross-check, or none [default: cvode-adams; rodas5p in a build without SUNDIALS]
+    #[arg(long, value_name = "METHOD", help_heading = "Numerics")]
     pub crosscheck: Option<String>,
-    /// The method of the flow and its derivatives: auto (taylor), taylor, cvode-bdf, cvode-adams, rodas5p, rodas4, rosenbrock23 or radau
+    /// Method for the flow and its derivatives: auto (taylor), taylor, cvode-bdf, cvode-adams, rodas5p, rodas4, rosenbrock23 or radau
     #[arg(
         long,
         value_name = "NAME",
@@ -441,24 +447,18 @@ pub struct OrbitOptions {
         help_heading = "Numerics"
     )]
     pub method: String,
-    /// Relative local error tolerance [default: 1e-15 of taylor, 1e-13 of radau, 1e-11 of the others]
+    /// Relative local error tolerance [default: 1e-15 for taylor, 1e-13 for radau, 1e-11 for the others]
     #[arg(long, value_name = "X", value_parser = number, allow_negative_numbers = true, help_heading = "Numerics")]
     pub rtol: Option<f64>,
     /// Absolute local error tolerance of tau and ln psi [default: as --rtol]
     #[arg(long, value_name = "X", value_parser = number, allow_negative_numbers = true, help_heading = "Numerics")]
     pub atol: Option<f64>,
-    /// Largest step in time, for what is shorter than a step: a pulse that begins and ends within one is seen by no method
+    /// Largest time step, for features shorter than a step: no method sees a pulse that begins and ends within one step
     #[arg(long, value_name = "H", value_parser = number, allow_negative_numbers = true, help_heading = "Numerics")]
     pub max_step: Option<f64>,
-    /// Give up an arc after so many steps
+    /// Stop an arc after this many steps
     #[arg(long, value_name = "N", value_parser = count, default_value_t = twinslip::integrate::MAX_STEPS, help_heading = "Numerics")]
     pub max_steps: usize,
-    /// Draw stress, states and slip rates over one period, of a system of one's own all states, and the phase plane, as FILE.svg or FILE.png
-    #[arg(long, value_name = "FILE", help_heading = "Output")]
-    pub plot: Option<PathBuf>,
-    /// Where results go.
-    #[command(flatten)]
-    pub output: OutputOptions,
 }
 
 /// Takes any text, and tells the shell which names there are: whether a name is one is checked where it has its meaning, by the

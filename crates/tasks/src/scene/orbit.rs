@@ -75,11 +75,11 @@ impl OrbitPlan {
         let dimension = match (self.query.symmetry, self.slab.interfaces) {
             _ if self.system.unequal.is_some() => "3: the interfaces differ",
             _ if self.either => {
-                "2: both interfaces move alike; 3 where that orbit is not stable, or there is none"
+                "2: both interfaces in phase; 3 where that orbit is not stable, or does not exist"
             }
             (Symmetry::Asymmetric, _) => "3",
             (Symmetry::Symmetric, 2) => {
-                "2: both interfaces move alike; the multiplier across is a quadrature"
+                "2: both interfaces in phase; the transverse multiplier is a quadrature"
             }
             (Symmetry::Symmetric, _) => "2",
         };
@@ -188,7 +188,7 @@ fn symmetry(name: Option<&str>, system: &System) -> Result<Symmetry> {
     match (system.unequal, asked.transpose()?) {
         (None, asked) => Ok(asked.unwrap_or(Symmetry::Symmetric)),
         (Some(_), Some(asked)) => Err(Error::Input(format!(
-            "`symmetry` {}: interfaces that differ never move alike; leave it away",
+            "`symmetry` {}: unequal interfaces have no symmetric orbits; leave it out",
             asked.name()
         ))),
         (Some(_), None) => Ok(Symmetry::Asymmetric),

@@ -18,8 +18,8 @@ pub(super) const USUAL_START: &str = "near-symmetric";
 /// The asymmetry of `--start near-symmetric` where none is given.
 pub(super) const NEAR_SYMMETRIC: f64 = 0.01;
 /// Total slip rate over V_H from which on an excursion counts as a stick-slip event.
-const EVENT_THRESHOLD: f64 = 2.0;
-/// More rows than this are a slip of the pen.
+pub(super) const EVENT_THRESHOLD: f64 = 2.0;
+/// Upper limit on the number of rows, to catch typing errors.
 const MAX_ROWS: f64 = 1e9;
 /// tau, and ln psi of both interfaces: twice the same where there is one, or where both move alike.
 pub type Point = (f64, [f64; 2]);
@@ -176,7 +176,7 @@ impl Plan {
         ];
         if let Some((name, _)) = of_many.into_iter().find(|(_, asked)| *asked) {
             return Err(Error::Input(format!(
-                "`{name}` is of the events of three interfaces and more; of one or two `events` has all"
+                "`{name}` is for the events of three or more interfaces; for one or two `events` has everything"
             )));
         }
         let text = options.start.as_deref().unwrap_or(USUAL_START);
@@ -274,7 +274,7 @@ impl Plan {
 pub(super) fn until(options: &IntegrateOptions) -> Result<f64> {
     let until = options
         .until
-        .ok_or_else(|| Error::Input("`until` T is missing: when shall the run end?".into()))?;
+        .ok_or_else(|| Error::Input("`until` T is missing: the end time of the run".into()))?;
     positive("until", until)
 }
 

@@ -160,7 +160,9 @@ impl<'a> RunObserver<'a> {
         RunObserver {
             plan,
             sink,
-            detector: plan.events.map(|threshold| Detector::new(plan, threshold)),
+            detector: plan
+                .detected()
+                .map(|threshold| Detector::new(plan, threshold)),
             only_end: plan.sampling == Sampling::FinalOnly
                 && plan.events.is_none()
                 && !plan.picture,

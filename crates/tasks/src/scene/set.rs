@@ -121,7 +121,7 @@ impl SlabOptions {
         let mut slab = self.clone();
         for (name, value) in assignments(&self.text.set)? {
             if ["driving", "stiffness"].contains(&name) {
-                let what = format!("`set` {name}: the grid of this command has it");
+                let what = format!("`set` {name}: the grid of this command sets it");
                 return Err(Error::Input(what));
             }
             slab.put(name, value)?;
@@ -135,7 +135,7 @@ impl SlabOptions {
             return Ok(());
         }
         if ["slip_length", "normal_stress"].contains(&name) && !self.si {
-            let what = format!("`set` {name}: without `si` it is a unit, and 1");
+            let what = format!("`set` {name}: without `si` it is the unit of other numbers, and 1");
             return Err(Error::Input(what));
         }
         match name {

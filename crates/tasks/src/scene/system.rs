@@ -160,13 +160,13 @@ impl System {
         }
         if interfaces > 2 && slab.law_file().is_some() {
             return Err(Error::Input(format!(
-                "`law` {} is from a file; the steady states of {interfaces} interfaces are of built-in laws, those of one or two of any law",
+                "`law` {} is from a file; the steady states of {interfaces} interfaces need a built-in law, those of one or two take any law",
                 slab.law_told()
             )));
         }
         if interfaces > 2 && OfOne::read(slab)?.any() {
             return Err(Error::Input(format!(
-                "`set`: the {interfaces} interfaces are equal, and none has a number of its own; two interfaces may differ"
+                "`set`: the {interfaces} interfaces are equal; only two interfaces may differ"
             )));
         }
         Self::counted(slab, interfaces, options.driving, options.stiffness)
@@ -188,7 +188,7 @@ impl System {
     ) -> Result<Self> {
         if options.text.system.is_some() {
             return Err(Error::Input(
-                "`system` names a system of one's own, and this command is of interfaces; integrate, equilibria, section, orbit, branch, locus and sweep take it".into(),
+                "`system` names a user-defined system, and this command is for interfaces; integrate, equilibria, section, orbit, branch, locus and sweep take it".into(),
             ));
         }
         if options.law_file().is_some() {

@@ -75,6 +75,11 @@ impl TimeUnit {
         [a.name, b.name, c.name, d.name]
     };
 
+    /// Its length in seconds.
+    pub(super) fn seconds(self) -> f64 {
+        self.seconds
+    }
+
     /// The unit of this name.
     ///
     /// # Errors

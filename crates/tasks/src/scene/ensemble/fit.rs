@@ -122,7 +122,7 @@ impl FrictionFit {
         }
         if !AnyLaw::NAMES.contains(&fit.law.as_str()) {
             return Err(format!(
-                "the fit is of the law {}, which is not built in: a law from a file has no units here",
+                "the fit has the law {}, which is not built in: a law from a file has no units here",
                 fit.law
             ));
         }

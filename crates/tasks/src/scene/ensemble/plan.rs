@@ -43,7 +43,8 @@ impl EnsemblePlan {
             .is_some_and(|slab| slab.text.system.is_some())
         {
             return Err(Error::Input(
-                "`ensemble` is of friction, and `system` names a system of one's own".into(),
+                "`ensemble` has friction parameters, and `system` names a user-defined system"
+                    .into(),
             ));
         }
         let fit = FrictionFit::read(&file.path)?;

@@ -104,12 +104,12 @@ impl Command {
         };
         if resumes {
             return wrong(
-                "`ensemble` keeps nothing to go on with: leave out `resume` and `shard`".into(),
+                "`ensemble` cannot be resumed or split: leave out `resume` and `shard`".into(),
             );
         }
         if draws {
             return wrong(
-                "`ensemble` is of the parameters of a fit, and takes neither `draw` nor `basin`"
+                "`ensemble` draws the parameters of a fit, and cannot be combined with `draw` or `basin`"
                     .into(),
             );
         }

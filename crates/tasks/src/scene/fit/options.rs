@@ -15,19 +15,19 @@ pub struct FitOptions {
     #[arg(value_name = "DATA", id = "data")]
     pub data: Option<PathBuf>,
 
-    /// Laws that are fitted, comma-separated: spinodal, bounded, regularised-ageing, dieterich-ruina, slip, or FILE.toml; of several each
-    /// is compared with the best
+    /// Laws to fit, comma-separated: spinodal, bounded, regularised-ageing, dieterich-ruina (or ageing), slip, or FILE.toml; several laws
+    /// are each compared with the best
     #[arg(long, value_name = "NAME[,NAME...]", default_value = "dieterich-ruina", value_parser = Names::of(AnyLaw::NAMES), hide_possible_values = true, help_heading = "Model")]
     pub law: String,
     /// State variables: 1 or 2
     #[arg(long, value_name = "N", value_parser = count, default_value_t = 1, help_heading = "Model")]
     pub states: usize,
-    /// Parameters that are fitted, comma-separated; also healing_time, residual_strength, evolution_effect_2, slip_length_2, drift (a straight
-    /// line, friction per metre), and those of a law from a file. Those that have neither a value nor a default are fitted too [default:
+    /// Parameters to fit, comma-separated; also healing_time, residual_strength, evolution_effect_2, slip_length_2, drift (a straight line,
+    /// friction per metre), and those of a law from a file. Parameters with neither a value nor a default are fitted too [default:
     /// direct_effect,evolution_effect,slip_length,stiffness,reference_friction, with --states 2 also evolution_effect_2,slip_length_2]
     #[arg(long, value_name = "NAMES", help_heading = "Model")]
     pub free: Option<String>,
-    /// Direct effect a: its value, or where the search begins
+    /// Direct effect a: its value, or the start of the search
     #[arg(long, value_name = "a", value_parser = number, allow_negative_numbers = true, help_heading = "Model")]
     pub direct_effect: Option<f64>,
     /// Evolution effect b
@@ -45,7 +45,7 @@ pub struct FitOptions {
     /// Friction coefficient at V*
     #[arg(long, value_name = "a_v", value_parser = number, allow_negative_numbers = true, help_heading = "Model")]
     pub reference_friction: Option<f64>,
-    /// Healing time t** in s, of laws that have one [default: 100 L/V*]
+    /// Healing time t** in s, for laws that have one [default: 100 L/V*]
     #[arg(long, value_name = "R", value_parser = number, allow_negative_numbers = true, help_heading = "Model")]
     pub healing_time: Option<f64>,
     /// Residual strength c of the spinodal law [default: 1e-3]
@@ -54,10 +54,10 @@ pub struct FitOptions {
     /// Stiffness of the apparatus, in Pa/m, or as friction per length: 0.003/um
     #[arg(long, value_name = "K", help_heading = "Model")]
     pub stiffness: Option<String>,
-    /// Slope of a straight line that is added, friction per metre of load-point displacement [default: 0]
+    /// Slope of an added straight line, friction per metre of load-point displacement [default: 0]
     #[arg(long, value_name = "SLOPE", value_parser = number, allow_negative_numbers = true, help_heading = "Model")]
     pub drift: Option<f64>,
-    /// Any parameter by its name, such as one of a law from a file; may be given again
+    /// Set any parameter by name, such as one of a law from a file; repeatable
     #[arg(
         long,
         value_name = "NAME=VALUE",
@@ -73,8 +73,8 @@ pub struct FitOptions {
     #[arg(long, value_name = "sigma", value_parser = number, allow_negative_numbers = true, help_heading = "Model")]
     pub normal_stress: Option<f64>,
 
-    /// Velocity of the load point: T:V,T:V,... in s and m/s, T1-T2:V for a ramp, or FILE.csv; times as in the record [default: the steps
-    /// that its displacement shows]
+    /// Velocity of the load point: T:V,T:V,... in s and m/s, T1-T2:V for a ramp, or FILE.csv; times as in the record [default: steps
+    /// detected from the displacement]
     #[arg(
         long,
         value_name = "PROGRAM",
@@ -82,26 +82,26 @@ pub struct FitOptions {
         help_heading = "Loading"
     )]
     pub program: Option<String>,
-    /// Velocity before the first change of the program, in m/s [default: that of the displacement]
+    /// Velocity before the first change of the program, in m/s [default: from the displacement]
     #[arg(long, value_name = "V", value_parser = number, allow_negative_numbers = true, help_heading = "Loading")]
     pub driving: Option<f64>,
-    /// What moves the load point: the steps of its displacement, or recorded, all of it, smoothed as friction follows it best
+    /// Motion of the load point: the steps of its displacement, or recorded, the whole displacement, smoothed so that friction fits best
     #[arg(long, value_name = "steps|recorded", default_value = "steps", value_parser = Names::of(["steps", "recorded"]), hide_possible_values = true, help_heading = "Loading")]
     pub load_point: String,
 
-    /// Column of the time, by name or number from 1 on; so the others
+    /// Column of the time, by name or number from 1; the same holds for the other columns
     #[arg(long, value_name = "COLUMN", help_heading = "Data")]
     pub time: Option<String>,
     /// Column of the displacement of the load point
     #[arg(long, value_name = "COLUMN", help_heading = "Data")]
     pub displacement: Option<String>,
-    /// Column of the friction coefficient, or of the shear stress where its unit is one of stress
+    /// Column of the friction coefficient, or of the shear stress if its unit is one of stress
     #[arg(long, value_name = "COLUMN", help_heading = "Data")]
     pub friction: Option<String>,
     /// Column of the normal stress
     #[arg(long, value_name = "COLUMN", help_heading = "Data")]
     pub normal_stress_column: Option<String>,
-    /// Column by which the squares of residuals are multiplied
+    /// Column of weights of the squared residuals
     #[arg(long, value_name = "COLUMN", help_heading = "Data")]
     pub weights: Option<String>,
     /// First time of the window in s, as in the record
@@ -110,11 +110,11 @@ pub struct FitOptions {
     /// Last time of the window in s
     #[arg(long, value_name = "T", value_parser = number, allow_negative_numbers = true, help_heading = "Data")]
     pub to: Option<f64>,
-    /// Take one sample of so many
+    /// Use every N-th sample
     #[arg(long, value_name = "N", value_parser = count, default_value_t = 1, help_heading = "Data")]
     pub decimate: usize,
 
-    /// Range of a parameter, NAME=A:B; may be given again
+    /// Range of a parameter, NAME=A:B; repeatable
     #[arg(
         long,
         value_name = "NAME=A:B",
@@ -123,32 +123,32 @@ pub struct FitOptions {
         help_heading = "Fit"
     )]
     pub bounds: Vec<String>,
-    /// How residuals count: linear (least squares), or soft-l1, huber or cauchy, which let outliers count less
+    /// Loss function of the residuals: linear (least squares), or soft-l1, huber or cauchy, which reduce the weight of outliers
     #[arg(long, value_name = "NAME", default_value = "linear", value_parser = Names::of(["linear", "soft-l1", "huber", "cauchy"]), hide_possible_values = true, help_heading = "Fit")]
     pub loss: String,
-    /// Residuals that are large for such a loss, in friction [default: 3 times the scatter from sample to sample]
+    /// Scale of a robust loss, in friction [default: 3 times the scatter from sample to sample]
     #[arg(long, value_name = "X", value_parser = number, allow_negative_numbers = true, help_heading = "Fit")]
     pub loss_scale: Option<f64>,
-    /// 95 % intervals: by profile, or linear from the standard errors, which is quicker
+    /// 95 % intervals: by profile, or linear from the standard errors, which is faster
     #[arg(long, value_name = "profile|linear", default_value = "profile", value_parser = Names::of(["profile", "linear"]), hide_possible_values = true, help_heading = "Fit")]
     pub intervals: String,
-    /// Compute the derivatives at the minimum once more by sensitivities of CVODES, and report the largest difference
+    /// Recompute the derivatives at the minimum by sensitivities of CVODES, and report the largest difference
     #[arg(long, help_heading = "Fit")]
     pub crosscheck: bool,
-    /// Fit each step of velocity by itself, too
+    /// Also fit each velocity step separately
     #[arg(long, help_heading = "Fit")]
     pub each_step: bool,
 
     /// Draw data, fit and residuals as FILE.svg or FILE.png
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub plot: Option<PathBuf>,
-    /// Draw the ellipses of all pairs of parameters and their profiles
+    /// Draw the confidence ellipses of all pairs of parameters and their profiles
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub plot_parameters: Option<PathBuf>,
-    /// Draw the steady-state law that follows, with its 95 % band
+    /// Draw the resulting steady-state law with its 95 % band
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub plot_law: Option<PathBuf>,
-    /// Write a page with all of it, FILE.html
+    /// Write a page with all results, FILE.html
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub report: Option<PathBuf>,
     /// Where results go.

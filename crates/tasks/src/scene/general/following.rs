@@ -140,7 +140,7 @@ pub fn starts_at(model: &ModelOptions, free: &[&str]) -> Result<()> {
     for name in free {
         if following::loading_range(name).is_some() && !model.gives(name)? {
             return Err(Error::Input(format!(
-                "`start` is of an orbit at values of both parameters that vary; give its `{name}` too"
+                "`start` belongs to an orbit at values of both free parameters; give its `{name}` too"
             )));
         }
     }
@@ -155,7 +155,7 @@ pub fn both_symmetries(name: &str) -> Result<()> {
     match following::symmetry(name, 2)? {
         None => Ok(()),
         Some(_) => Err(Error::Input(format!(
-            "`symmetry` {name} is told apart for equal interfaces alone, where nothing but driving and stiffness varies; leave it out"
+            "`symmetry` {name} applies only to equal interfaces with driving and stiffness as free parameters; leave it out"
         ))),
     }
 }

@@ -56,6 +56,14 @@ impl SlabSubject {
                 "`{name}` sets the unit of stress in SI, so that all else would change with it; leave `si` out"
             )));
         }
+        for (name, others) in SCALES {
+            let indexed = format!("{name}_1");
+            if let Some(free) = free.iter().find(|free| **free == name || **free == indexed) {
+                return Err(Error::Input(format!(
+                    "`{free}` scales all other numbers and cannot vary here; {others} in its place"
+                )));
+            }
+        }
         let loading = Loading {
             driving: system.driving.unwrap_or(1.0),
             stiffness: system.stiffness.unwrap_or(1.0),
@@ -150,6 +158,12 @@ impl SlabSubject {
         Ok(interfaces)
     }
 }
+
+/// Parameters of the first interface by which all is dimensionless, and what may vary in their place.
+const SCALES: [(&str, &str); 2] = [
+    ("slip_length", "vary `stiffness` and `healing_time`"),
+    ("normal_stress", "vary `stiffness`"),
+];
 
 /// Parameters that set the scales by which K and all stresses are dimensionless.
 const SETS_UNITS: [&str; 2] = ["direct_effect", "direct_effect_1"];

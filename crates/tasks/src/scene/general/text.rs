@@ -69,7 +69,7 @@ impl TextSubject {
         let near = start.filter(|_| !orbits);
         if within.is_some() && near.is_some() {
             return Err(Error::Input(
-                "`start` and `box` both say where equilibria are looked for; give one of them"
+                "`start` and `box` both set where equilibria are searched for; give one of them"
                     .into(),
             ));
         }

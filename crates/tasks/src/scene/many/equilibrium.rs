@@ -76,7 +76,7 @@ impl ManyEquilibriumPlan {
         ];
         if let Some((name, _)) = refused.into_iter().find(|(_, asked)| *asked) {
             return Err(Error::Input(format!(
-                "`draw` gives each interface of a built-in law constants of its own, and `{name}` has none of these; leave out one of them"
+                "`draw` gives each interface of a built-in law different constants, which `{name}` does not have; leave out one of them"
             )));
         }
         let model = options.model.resolved()?;

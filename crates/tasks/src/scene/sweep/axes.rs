@@ -65,7 +65,7 @@ impl Axes {
             let name = name.trim();
             if let Some(other) = axes.says(name).or(said(options, name)?) {
                 return Err(Error::Input(format!(
-                    "`grid` {name}: {other} says already what it is"
+                    "`grid` {name}: {other} already sets it"
                 )));
             }
             let range = Range::of_any_sign(&format!("grid {name}"), range)?;

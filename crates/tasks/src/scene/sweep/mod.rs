@@ -167,7 +167,7 @@ impl SweepPlan {
     pub fn of_command(command: &str) -> Result<Self> {
         if command.contains("$'") {
             return Err(Error::Input(
-                "it is of a system or law that was given as text; parts are joined of those in a file".into(),
+                "its system or law was given as text; only parts with one from a file can be joined".into(),
             ));
         }
         let words = command.strip_prefix("twinslip sweep").unwrap_or_default();
@@ -209,7 +209,7 @@ fn of_a_system(options: &SweepOptions) -> Result<()> {
     match asked.into_iter().find(|(_, text, _)| text.is_some()) {
         None => Ok(()),
         Some((name, _, theirs)) => Err(Error::Input(format!(
-            "`{name}` is of a `system`, and not of interfaces: {theirs}"
+            "`{name}` is for a `system`, not for interfaces: {theirs}"
         ))),
     }
 }

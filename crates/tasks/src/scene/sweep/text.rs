@@ -77,7 +77,7 @@ impl TextPoints {
         let known = model.system.parameter_names();
         if options.driving.is_some() || options.stiffness.is_some() {
             return Err(Error::Input(
-                "`driving` and `stiffness` are of interfaces; of a `system` say what varies by `grid` NAME=A:B:N".into(),
+                "`driving` and `stiffness` belong to interfaces; for a `system` give what varies by `grid` NAME=A:B:N".into(),
             ));
         }
         if axes.names.is_empty() && !options.basin {

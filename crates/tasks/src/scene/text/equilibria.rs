@@ -66,7 +66,7 @@ impl TextEquilibriaPlan {
     pub fn new(options: &EquilibriaOptions, model: TextModel) -> Result<Self> {
         if options.solver.is_some() {
             return Err(Error::Input(
-                "`solver` is of built-in laws; steady states of a `system` or a `law` from a file are found in boxes".into(),
+                "`solver` is for built-in laws; steady states of a `system` or a `law` from a file are found in boxes".into(),
             ));
         }
         let place = match &options.within {

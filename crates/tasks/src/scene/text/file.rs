@@ -306,11 +306,11 @@ impl<'a> Tables<'a> {
         let mut letters = name.chars();
         if !(letters.next().is_some_and(begins_name) && letters.all(continues_name)) {
             return wrong(
-                "is no name: these are of letters, digits and _, and begin with no digit",
+                "is not a name: names have letters, digits and _, and do not begin with a digit",
             );
         }
         if name == "pi" || Function::named(name).is_some() {
-            return wrong("has a meaning of its own in formulas, and can't be given another");
+            return wrong("is reserved in formulas");
         }
         if self.meanings.insert(name, meaning).is_some() {
             return wrong("is given twice among states, parameters and [where]");

@@ -6,8 +6,7 @@ use std::path::PathBuf;
 #[derive(Debug, Clone, Default, PartialEq, clap::Args)]
 #[command(next_help_heading = "Model")]
 pub struct TextOptions {
-    /// A system of one's own in place of interfaces: a TOML file with its states, parameters and rates, or one that is built in,
-    /// such as lorenz
+    /// A user-defined system in place of interfaces: a TOML file with its states, parameters and rates, or a built-in one, such as lorenz
     #[arg(
         long,
         value_name = "FILE",
@@ -17,8 +16,8 @@ pub struct TextOptions {
         ]
     )]
     pub system: Option<PathBuf>,
-    /// Another value of any parameter, NAME=VALUE, by the names that JSON has; may be given again. With _1 or _2 after the name it is
-    /// that of one interface: residual_strength_2=0.002
+    /// Set any parameter, NAME=VALUE; repeatable. NAME is as in the JSON output, or a symbol: a, b, c, Dc, mu0, V0, sigma, K. A suffix _1
+    /// or _2 sets it for one interface: residual_strength_2=0.002
     #[arg(
         long,
         value_name = "NAME=VALUE",

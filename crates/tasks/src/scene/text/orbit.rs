@@ -284,7 +284,7 @@ fn symmetry(options: &OrbitOptions, model: &TextModel) -> Result<Symmetry> {
     if let (Some(slab), Some(name)) = (&model.slab, &options.symmetry) {
         let refused = |why: &str| Err(Error::Input(format!("`symmetry` {name}: {why}")));
         if slab.differ(&model.system) {
-            return refused("interfaces that differ never move alike; leave it away");
+            return refused("unequal interfaces have no symmetric orbits; leave it out");
         }
         if slab.clusters().len() == 1 && symmetry == Symmetry::Asymmetric {
             return refused("what moves alike has nothing to differ from");

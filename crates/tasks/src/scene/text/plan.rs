@@ -129,7 +129,7 @@ impl TextPlan {
     pub fn new(options: &IntegrateOptions, mut model: TextModel) -> Result<Self> {
         if options.events.is_some() {
             return Err(Error::Input(
-                "`events` are stick-slip events, which need interfaces that are built in; a `system` or a `law` of one's own has none".into(),
+                "`events` are stick-slip events of interfaces with a built-in law; a `system` or a `law` from a file has none".into(),
             ));
         }
         let until = until(options)?;
@@ -284,7 +284,7 @@ fn driving_column() -> Column<TextInstant> {
 fn programmed(text: &str, until: f64, model: &mut TextModel) -> Result<Program> {
     let Some(slab) = &model.slab else {
         return Err(Error::Input(
-            "`program` changes the driving velocity of interfaces; a `system` of one's own has none".into(),
+            "`program` changes the driving velocity of interfaces; a user-defined `system` has none".into(),
         ));
     };
     let program = Program::read(text, until)?;

@@ -407,7 +407,7 @@ fn counts(options: &SlabOptions) -> Result<Vec<usize>> {
             0 => Err(Error::parameter("interfaces", interfaces, "at least 1")),
             _ if interfaces as usize <= MOST => Ok(vec![1; interfaces as usize]),
             _ => Err(Error::Input(format!(
-                "`interfaces` {interfaces}: at most {MOST} can move on their own here; say which move alike by `clusters`"
+                "`interfaces` {interfaces}: at most {MOST} can move independently here; group equal ones with `clusters`"
             ))),
         };
     };

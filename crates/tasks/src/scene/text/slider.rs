@@ -40,7 +40,7 @@ impl TextSlider {
         let law = read_law(path)?;
         let Some(direct_effect) = law.place(DIRECT_EFFECT) else {
             return Err(Error::Input(format!(
-                "the law {} has no parameter {DIRECT_EFFECT}, by which friction is told from its stress",
+                "the law {} has no parameter {DIRECT_EFFECT}, which relates friction to its stress",
                 law.name
             )));
         };

@@ -1,0 +1,160 @@
+//! Numbers with a unit, such as `10um` and `1nm/s`: what they measure, and their value in SI.
+
+use crate::scene::units::TimeUnit;
+
+/// What a number measures, by its unit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Number,
+    Length,
+    Time,
+    Stress,
+    Velocity,
+    Stiffness,
+    Damping,
+}
+
+impl Kind {
+    /// Powers of length, time and stress.
+    fn dimensions(self) -> [i8; 3] {
+        match self {
+            Kind::Number => [0, 0, 0],
+            Kind::Length => [1, 0, 0],
+            Kind::Time => [0, 1, 0],
+            Kind::Stress => [0, 0, 1],
+            Kind::Velocity => [1, -1, 0],
+            Kind::Stiffness => [-1, 0, 1],
+            Kind::Damping => [-1, 1, 1],
+        }
+    }
+
+    /// Its name, and a unit in which it is often given.
+    fn example(self) -> (&'static str, &'static str) {
+        match self {
+            Kind::Number => ("a number without a unit", ""),
+            Kind::Length => ("a length", "um"),
+            Kind::Time => ("a time", "year"),
+            Kind::Stress => ("a stress", "MPa"),
+            Kind::Velocity => ("a velocity", "um/s"),
+            Kind::Stiffness => ("a stiffness", "MPa/mm"),
+            Kind::Damping => ("a damping", "MPa.s/m"),
+        }
+    }
+}
+
+/// A unit or a product of units: its dimensions, the power of ten, and the factor beside it as a ratio.
+#[derive(Debug, Clone, Copy)]
+struct Unit {
+    dimensions: [i8; 3],
+    power: i32,
+    ratio: (f64, f64),
+}
+
+/// The units that products and quotients are made of. Seconds are by their number, all others by the power of ten.
+fn base(name: &str) -> Option<Unit> {
+    let [length, time, stress] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
+    let decimal = |dimensions, power| Unit {
+        dimensions,
+        power,
+        ratio: (1.0, 1.0),
+    };
+    let seconds = |seconds| Unit {
+        ratio: (seconds, 1.0),
+        ..decimal(time, 0)
+    };
+    Some(match name {
+        "km" => decimal(length, 3),
+        "m" => decimal(length, 0),
+        "cm" => decimal(length, -2),
+        "mm" => decimal(length, -3),
+        // The micro sign and the Greek letter look the same.
+        "um" | "\u{b5}m" | "\u{3bc}m" => decimal(length, -6),
+        "nm" => decimal(length, -9),
+        "GPa" => decimal(stress, 9),
+        "MPa" => decimal(stress, 6),
+        "bar" => decimal(stress, 5),
+        "kPa" => decimal(stress, 3),
+        "Pa" => decimal(stress, 0),
+        "ms" => decimal(time, -3),
+        "min" => seconds(60.0),
+        "h" => seconds(TimeUnit::named("hour").ok()?.seconds()),
+        "d" => seconds(TimeUnit::named("day").ok()?.seconds()),
+        "yr" => seconds(TimeUnit::named("year").ok()?.seconds()),
+        name => seconds(TimeUnit::named(name).ok()?.seconds()),
+    })
+}
+
+impl Unit {
+    /// `MPa.s/m`: factors with a dot, a star or a space between, and what they are divided by after strokes.
+    fn parse(text: &str) -> Option<Unit> {
+        let mut product = Unit {
+            dimensions: [0; 3],
+            power: 0,
+            ratio: (1.0, 1.0),
+        };
+        for (place, part) in text.split('/').enumerate() {
+            let sign: i8 = if place == 0 { 1 } else { -1 };
+            for factor in part.split(['.', '*', ' ', '\u{b7}']) {
+                let factor = base(factor)?;
+                for (sum, one) in product.dimensions.iter_mut().zip(factor.dimensions) {
+                    *sum += sign * one;
+                }
+                product.power += i32::from(sign) * factor.power;
+                match sign {
+                    1 => product.ratio.0 *= factor.ratio.0,
+                    _ => product.ratio.1 *= factor.ratio.0,
+                }
+            }
+        }
+        Some(product)
+    }
+
+    /// A decimal number of these in SI. The power of ten goes into the text, so that 10um is the double nearest to 1e-5.
+    fn in_si(self, number: &str) -> Option<f64> {
+        let (mantissa, exponent) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
+        let exponent = exponent.parse::<i32>().ok()?.checked_add(self.power)?;
+        let x: f64 = format!("{mantissa}e{exponent}").parse().ok()?;
+        Some(x * self.ratio.0 / self.ratio.1).filter(|x| x.is_finite())
+    }
+}
+
+/// A number and the unit behind it; `None` for a text that begins with no number, and for a number alone.
+pub(in super::super) fn with_unit(text: &str) -> Option<(&str, &str)> {
+    let text = text.trim();
+    let digits = text.trim_start_matches(['-', '+']);
+    if !digits.starts_with(|c: char| c.is_ascii_digit() || c == '.') {
+        return None;
+    }
+    let mut ends = (1..=text.len()).rev();
+    let end = ends.find(|&i| text.is_char_boundary(i) && text[..i].parse::<f64>().is_ok())?;
+    let (number, unit) = (&text[..end], text[end..].trim_start());
+    unit.starts_with(|c: char| c.is_alphabetic() || c == '/')
+        .then_some((number, unit))
+}
+
+/// The number in SI of a text that has a unit; `None` of one without. Times are in so many seconds.
+///
+/// # Errors
+/// A sentence without its subject: for an unknown unit, and one of another kind.
+pub(super) fn in_si(text: &str, kind: Kind, seconds: f64) -> Result<Option<f64>, String> {
+    let Some((number, unit)) = with_unit(text) else {
+        return Ok(None);
+    };
+    let (name, usual) = kind.example();
+    let wanted = match kind {
+        Kind::Number => format!("{name} is wanted"),
+        _ => format!("{name} is wanted, as {number}{usual}"),
+    };
+    let Some(mut unit) = Unit::parse(unit) else {
+        return Err(format!("{unit:?} is not a unit; {wanted}"));
+    };
+    if unit.dimensions != kind.dimensions() {
+        return Err(wanted);
+    }
+    if kind == Kind::Time {
+        unit.ratio.1 *= seconds;
+    }
+    let x = unit.in_si(number);
+    x.map(Some)
+        .ok_or_else(|| format!("{text:?} is beyond what a double holds"))
+}
