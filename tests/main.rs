@@ -146,4 +146,5 @@ mod transport;
 mod unequal;
 mod unequal_commands;
 mod unequal_equilibria;
+mod versions;
 mod work_precision;
