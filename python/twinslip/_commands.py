@@ -736,7 +736,7 @@ class Commands:
             Number of starts at each point, with a row for each: the first beside the symmetric
             steady state, the second with equal interfaces, the third far from it, the others at
             random (``seed``). With ``system`` the first is its start, the others lie at random
-            around it, in each state x within 1 + |x| [default: 1]
+            around it, in each state x within 1 + abs(x) [default: 1]
         seed : int, optional
             Seed of the random starts [default: 1]
         follow : bool, optional
@@ -802,7 +802,7 @@ class Commands:
         each_step: bool = False,
         progress: Optional[bool] = None,
     ) -> Fit:
-        """Friction parameters from laboratory data: velocity steps fitted by least squares, with errors and 95 % intervals.
+        r"""Friction parameters from laboratory data: velocity steps fitted by least squares, with errors and 95 % intervals.
 
         Parameters
         ----------
@@ -842,7 +842,7 @@ class Commands:
             Column of the normal stress
         weights : str or int, optional
             Column of weights of the squared residuals
-        from_ : float, optional
+        from\_ : float, optional
             First time of the window in s, as in the record
         to : float, optional
             Last time of the window in s
