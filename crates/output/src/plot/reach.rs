@@ -138,7 +138,7 @@ mod test {
     /// A level line at -1 below a line at zero, with a band around it that is broader by a factor at the last of its points.
     fn range_with_band(side: f64, last: f64) -> (f64, f64) {
         let x: Vec<f64> = (0..10).map(f64::from).collect();
-        let mut sides = vec![side; 10];
+        let mut sides = [side; 10];
         sides[9] *= last;
         let panel = Panel {
             series: vec![PlotSeries::new("", x.clone(), vec![-1.0; 10])],
