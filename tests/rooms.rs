@@ -130,6 +130,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "orbit",
             "section",
             "equilibrium",
+            "friction",
             "number",
             "output",
         ],
