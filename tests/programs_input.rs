@@ -191,7 +191,7 @@ fn the_plan_and_the_picture_tell_of_changes() {
     let ended = twinslip(&format!("{scene} -q --plot {}", picture.display()));
     assert_eq!(ended.code, 0, "{}", ended.err);
     let drawn = std::fs::read_to_string(picture).expect("a picture");
-    for name in ["V<tspan", "= 0</", "= 4</", "#787878"] {
+    for name in [">V<tspan", ">0</", ">to 4</", "#787878"] {
         assert!(drawn.contains(name), "{name}");
     }
 }

@@ -130,6 +130,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "orbit",
             "section",
             "equilibrium",
+            "friction",
             "number",
             "output",
         ],
@@ -352,8 +353,11 @@ fn literals(text: &str) -> Vec<&str> {
 
 #[test]
 fn only_the_command_line_speaks_of_flags() {
-    // A scene and a sweep make command lines of their own of what they are given, and to an ensemble one says more than it holds.
+    // A scene, a sweep and what reads units and symbols make command lines of their own of what they are given, and to an ensemble one says more than it
+    // holds.
     let lines = [
+        "crates/tasks/src/scene/words/merge.rs",
+        "crates/tasks/src/scene/words/mod.rs",
         "crates/tasks/src/scene/file.rs",
         "crates/tasks/src/scene/sweep/words.rs",
         "crates/tasks/src/scene/ensemble/implied.rs",

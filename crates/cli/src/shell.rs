@@ -73,7 +73,8 @@ pub fn completions(options: &CompletionsOptions) -> Result<Ending> {
 pub fn man(options: &ManOptions) -> Result<Ending> {
     let program = program();
     // One for the program, and one for each command.
-    let pages = 1 + program.get_subcommands().count();
+    let shown = program.get_subcommands().filter(|one| !one.is_hide_set());
+    let pages = 1 + shown.count();
     std::fs::create_dir_all(&options.out)
         .and_then(|()| clap_mangen::generate_to(program, &options.out))
         .map_err(|error| Error::File {
