@@ -25,6 +25,20 @@ fn names_of_a_crowd_are_counted_at_one_place() {
     assert!(shown.says("HB"), "one that stands alone has no number");
 }
 
+/// The orbits next to a Hopf point are small, and yet the picture would have a gap there.
+#[test]
+fn branches_of_orbits_are_drawn_to_their_hopf_points() {
+    let file = crate::command::folder("drawn-to-hopf").join("branch.svg");
+    let ended = crate::command::twinslip(&format!(
+        "branch orbits --system fitzhugh-nagumo --along I --from 0.1 --to 1.6 -q --plot {}",
+        file.display()
+    ));
+    assert_eq!(ended.code, 0, "{}", ended.err);
+    let svg = std::fs::read_to_string(&file).expect("a picture");
+    // Both in every panel, and in the legend.
+    assert!(svg.matches("HB").count() >= 5, "{svg}");
+}
+
 #[test]
 fn a_legend_without_room_beside_the_title_begins_below_it() {
     let headed = |title: &str| {

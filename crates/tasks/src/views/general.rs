@@ -213,10 +213,33 @@ fn drawn(subject: &dyn Subject, kind: RowKind) -> Vec<(String, Quantity, Vec<usi
     pairs
 }
 
+/// The rows of branches of orbits with the Hopf points at their ends, where the least and the largest of each number are one.
+fn with_hopf_points(
+    rows: &[GeneralRow],
+    special: &[GeneralRow],
+    numbers: usize,
+) -> Vec<GeneralRow> {
+    let mut all = Vec::new();
+    for branch in rows.chunk_by(|a, b| a.number == b.number) {
+        let mut of_branch = special.iter().filter(|one| one.number == branch[0].number);
+        let end = |row: Option<&GeneralRow>| {
+            let mut end = row.filter(|row| row.label == Some(Label::Hb))?.clone();
+            if 2 * end.numbers.len() == numbers {
+                end.numbers = end.numbers.iter().flat_map(|&x| [x, x]).collect();
+            }
+            (end.numbers.len() == numbers).then_some(end)
+        };
+        all.extend(end(of_branch.next()));
+        all.extend_from_slice(branch);
+        all.extend(end(of_branch.next_back()));
+    }
+    all
+}
+
 /// Every number against the parameter, and the period of orbits.
 pub fn general_branches(
     rows: &[GeneralRow],
-    _: &[GeneralRow],
+    special: &[GeneralRow],
     plan: &GeneralBranchPlan<'_>,
 ) -> Drawing {
     /// So many numbers at most, in so many columns.
@@ -227,6 +250,11 @@ pub fn general_branches(
         "orbits"
     } else {
         "equilibria"
+    };
+    let numbers = plan.subject.numbers(plan.kind).len();
+    let rows = &match plan.kind.orbits {
+        true => with_hopf_points(rows, special, numbers),
+        false => rows.to_vec(),
     };
     let mut panels = Vec::new();
     let all = drawn(plan.subject, plan.kind).into_iter().take(MOST);
