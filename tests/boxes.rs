@@ -195,3 +195,28 @@ fn intervals_hold_what_is_partly_undefined() {
     let sign = Real::sign(across);
     assert_eq!((sign.lo(), sign.hi()), (-1.0, 1.0));
 }
+
+/// Boxes around the pole of a rate, n = -1, are never decided, and there are more of them than can be looked at.
+#[test]
+fn equilibria_are_found_beside_a_pole() {
+    let text = "name = \"pole\"
+states = [\"n\", \"p\"]
+[parameters]
+k = 2.0
+[rates]
+n = \"n*(1 - n/k) - n*p/(1 + n)\"
+p = \"p*(n/(1 + n) - 0.4)\"
+[start]
+n = 1.0
+p = 1.0
+";
+    let file = crate::common::text::file("beside-a-pole", text);
+    let ended = crate::command::twinslip(&format!(
+        "equilibria --system {file} --box n=-1:8,p=-1:8 --format json"
+    ));
+    assert_eq!(ended.code, 3, "{}", ended.err);
+    assert!(ended.err.contains("near n = -0.99"), "{}", ended.err);
+    let made: serde_json::Value = serde_json::from_str(&ended.out).expect("JSON");
+    let found = made["result"]["equilibria"].as_array().expect("equilibria");
+    assert_eq!(found.len(), 3, "{found:?}");
+}

@@ -8,6 +8,7 @@
 use crate::model::TextSystem;
 use crate::number::Interval;
 use nalgebra::DMatrix;
+use std::collections::VecDeque;
 
 /// A box: a range for every variable.
 pub type IntervalBox = Vec<Interval>;
@@ -44,7 +45,7 @@ pub struct IsolatedZero {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct ZerosInBox {
-    /// Its zeros, by their first component.
+    /// Its zeros, by their first component, then by the next ones.
     pub zeros: Vec<IsolatedZero>,
     /// Boxes that may have others, or none.
     pub undecided: Vec<IntervalBox>,
@@ -59,6 +60,8 @@ const CUT: f64 = 0.4871;
 const NARROW: f64 = 1e-9;
 /// A box is made larger by this part, so that a zero on its edge lies inside.
 const MARGIN: f64 = 0.1;
+/// Components nearer than this part of the box are as good as equal, where zeros are put in order.
+const SAME: f64 = 1e-9;
 /// Times that the operator is applied to a box with one zero: it shrinks by squares.
 const SHARPENED: usize = 12;
 
@@ -68,12 +71,13 @@ pub fn zeros_in_box(equations: &dyn Enclosed, all: &[Interval]) -> ZerosInBox {
         .iter()
         .map(|x| width(*x).max(f64::MIN_POSITIVE))
         .collect();
-    let mut open: Vec<IntervalBox> = vec![all.to_vec()];
+    // The largest first: boxes around a pole, which are never decided, must not use up the work before the rest has been looked at.
+    let mut open = VecDeque::from([all.to_vec()]);
     let (mut zeros, mut undecided): (Vec<IsolatedZero>, Vec<IntervalBox>) = Default::default();
     let times = all.len().max(FEW) as f64 / FEW as f64;
     let most = (MOST as f64 / times.powi(3)) as usize;
     let mut looked = 0;
-    while let Some(part) = open.pop() {
+    while let Some(part) = open.pop_front() {
         looked += 1;
         if looked > most {
             join(&mut undecided, part);
@@ -99,7 +103,14 @@ pub fn zeros_in_box(equations: &dyn Enclosed, all: &[Interval]) -> ZerosInBox {
     }
     // A zero may also lie in what could not be decided beside it.
     undecided.retain(|part| !zeros.iter().any(|zero| encloses(part, &zero.within)));
-    zeros.sort_by(|a, b| a.at[0].total_cmp(&b.at[0]));
+    // Mirror images have the same first component but for rounding.
+    let key = |zero: &IsolatedZero| -> Vec<i64> {
+        let parts = zero.at.iter().zip(&sizes);
+        parts
+            .map(|(x, size)| (x / size / SAME).round() as i64)
+            .collect()
+    };
+    zeros.sort_by_cached_key(key);
     ZerosInBox { zeros, undecided }
 }
 

@@ -141,6 +141,12 @@ impl<'a> Report<'a> {
         let report = Report::over(&output, call, &others, Over::All)?;
         match (report.format, &report.file) {
             (Format::Csv, Some(_)) => {
+                if !resumed.exists() {
+                    report.say(format_args!(
+                        "{} is not there yet: nothing to resume",
+                        resumed.display()
+                    ));
+                }
                 goes_on(&report);
                 Ok(report)
             }

@@ -32,7 +32,7 @@ pub fn run(options: &EquilibriaOptions, model: TextModel, call: &Call) -> Result
     Ok(match (ending, &found.undecided[..]) {
         (Ending::Done, [first, ..]) => report.undecided(format_args!(
             "the number of equilibria, as {} may hold any, near {}; a `box` without that place decides",
-            several(found.undecided.len(), "small box", "small boxes"),
+            several(found.undecided.len(), "part of the box", "parts of the box"),
             near(&plan.model, first)
         )),
         (Ending::Done, []) if verdicts > 0 => report.undecided(format_args!(

@@ -41,24 +41,25 @@ pub struct Criticality {
 /// A run of interfaces in SI, in the user's units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FaultSummary {
-    /// At the rate of steady sliding; `None` where the interfaces differ or V_H changes.
+    /// At the rate of steady sliding; `None` where the interfaces differ.
     pub criticality: Option<Criticality>,
     /// How many events began and ended in the run.
     pub events: usize,
     /// The times from one onset to the next.
     pub recurrence: Option<Spread>,
-    /// Of all events.
+    /// Of all events but the first, which depends on the start; of that where there is no other.
     pub stress_drop: Option<Spread>,
     /// The largest of all events.
     pub peak_slip_rate: Option<f64>,
 }
 
 impl FaultSummary {
-    /// Of a run that has one: in SI, and watched between its start and its end.
+    /// Of a run that has one: in SI, at one driving velocity, and watched between its start and its end. Where the velocity changes events answer to
+    /// that, and there is nothing to recur.
     pub fn new(plan: &Plan, outcome: &RunOutcome) -> Option<Self> {
         plan.detected()?;
         let units = &plan.system.units;
-        if !units.si() {
+        if !units.si() || plan.program.is_some() {
             return None;
         }
         let spread = |quantity, number: fn(&SlipEvent) -> Option<f64>| {
@@ -66,11 +67,15 @@ impl FaultSummary {
             Spread::of(numbers.map(|x| units.outward(quantity, x)))
         };
         let peak = spread(Quantity::SlipRate, |event| Some(event.peak_slip_rate));
+        let later = spread(Quantity::Stress, |event| {
+            event.recurrence.map(|_| event.stress_drop)
+        });
         Some(FaultSummary {
             criticality: criticality(plan),
             events: outcome.events.len(),
             recurrence: spread(Quantity::Time, |event| event.recurrence),
-            stress_drop: spread(Quantity::Stress, |event| Some(event.stress_drop)),
+            stress_drop: later
+                .or_else(|| spread(Quantity::Stress, |event| Some(event.stress_drop))),
             peak_slip_rate: peak.map(|peak| peak.most),
         })
     }
@@ -78,7 +83,7 @@ impl FaultSummary {
 
 fn criticality(plan: &Plan) -> Option<Criticality> {
     let system = &plan.system;
-    if system.unequal.is_some() || plan.program.is_some() {
+    if system.unequal.is_some() {
         return None;
     }
     // The stress of one spring falls with the slip of all interfaces.
@@ -93,7 +98,9 @@ fn criticality(plan: &Plan) -> Option<Criticality> {
 impl Plan {
     /// The threshold of the events that a run looks for: those that are asked for, and of a run in SI those of its summary.
     pub fn detected(&self) -> Option<f64> {
-        let summarised = self.system.units.si() && self.sampling != Sampling::FinalOnly;
+        let summarised = self.system.units.si()
+            && self.program.is_none()
+            && self.sampling != Sampling::FinalOnly;
         self.events.or(summarised.then_some(EVENT_THRESHOLD))
     }
 }

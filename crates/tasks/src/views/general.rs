@@ -1,13 +1,13 @@
 //! Diagrams of branches, and of curves, in any parameters.
 
 use super::diagram::{axis_label, symmetry_colour, symmetry_name, value};
-use super::labels::{colour_name, distinct, meanings, named_strokes};
+use super::labels::{colour_name, distinct, meanings_of, named_strokes};
 use crate::scene::{
     Free, GeneralBranchPlan, GeneralLocusPlan, GeneralRow, Quantity, RowKind, Subject, Units,
 };
 use twinslip::bifurcation::Label;
 use twinslip::equilibrium::{Symmetry, Verdict};
-use twinslip_output::plot::{Axis, Drawing, Mark, Panel, PlotSeries, Stroke};
+use twinslip_output::plot::{Axis, Drawing, Key, Mark, Panel, PlotSeries, Stroke};
 
 /// The axis of a parameter: logarithmic where its range spans more than a factor of ten.
 fn axis(free: &Free, units: &Units) -> Axis {
@@ -186,9 +186,12 @@ fn marks(
     distinct(special, named)
 }
 
-/// The names that the points of a picture have.
-fn labels(rows: &[GeneralRow]) -> impl Iterator<Item = Label> {
-    rows.iter().filter_map(|row| row.label)
+/// The legend of the points of a picture.
+fn keys(rows: &[GeneralRow]) -> Vec<Key> {
+    let named = rows
+        .iter()
+        .filter_map(|row| Some((row.label?, row.meaning()?)));
+    meanings_of(named)
 }
 
 /// What there is to draw of rows: the names and places of numbers, of orbits the least and the largest together.
@@ -278,7 +281,7 @@ pub fn general_branches(
                 Vec::new()
             },
             keys: if number == 0 {
-                meanings(labels(rows))
+                keys(special)
             } else {
                 Vec::new()
             },
@@ -337,7 +340,7 @@ pub fn general_curves(
     let plane = Panel {
         series: [colour_names(rows, "curve"), series(&y)].concat(),
         marks: marks(special, &x, &y, true),
-        keys: meanings(labels(special)),
+        keys: keys(special),
         ..Panel::new(
             title(plan.choice.title, plan.subject, &plan.free),
             axis(&plan.free[0], units),

@@ -40,12 +40,25 @@ fn symbol(label: Label) -> Symbol {
 
 /// What the names of these points mean, for the legend: those of one symbol together.
 pub(super) fn meanings(labels: impl Iterator<Item = Label>) -> Vec<Key> {
-    let present: Vec<Label> = labels.collect();
+    meanings_of(labels.map(|label| (label, label.meaning())))
+}
+
+/// The same where a label may mean several things: each is named once.
+pub(super) fn meanings_of<'a>(labels: impl Iterator<Item = (Label, &'a str)>) -> Vec<Key> {
+    let present: Vec<(Label, &str)> = labels.collect();
     let key = |shape: Symbol| {
-        let named = Label::ALL.into_iter().filter(|label| {
-            *label != Label::Ep && present.contains(label) && symbol(*label) == shape
+        let named = Label::ALL
+            .into_iter()
+            .filter(|label| *label != Label::Ep && symbol(*label) == shape);
+        let words = named.filter_map(|label| {
+            let mut known: Vec<&str> = Vec::new();
+            for (_, meaning) in present.iter().filter(|(one, _)| *one == label) {
+                if !known.contains(meaning) {
+                    known.push(meaning);
+                }
+            }
+            (!known.is_empty()).then(|| format!("{}: {}", label.name(), known.join(" or ")))
         });
-        let words = named.map(|label| format!("{}: {}", label.name(), label.meaning()));
         let words = words.collect::<Vec<_>>().join(", ");
         (!words.is_empty()).then_some(Key {
             symbol: shape,

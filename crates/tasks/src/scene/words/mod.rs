@@ -43,6 +43,8 @@ enum Shape {
     Start,
     /// `NAME=NUMBERS`, with commas between.
     Pairs,
+    /// Values of the parameter that varies, whose name may stand before them.
+    At,
     /// Names of parameters, which may have ranges.
     Along,
     In,
@@ -187,13 +189,13 @@ impl<'a> Context<'a> {
             "along" => return Some(Shape::Along),
             "in" => return Some(Shape::In),
             "range" => return Some(Shape::Pairs),
+            "at" if self.command == "branch" => return Some(Shape::At),
             _ if self.system => return None,
             "law" => Shape::Law,
             "program" => Shape::Program,
             "start" => Shape::Start,
             "set" | "grid" | "draw" | "bounds" | "surface" | "state-1" | "state-2" => Shape::Pairs,
             "at" if self.command == "locus" => Shape::Pairs,
-            "at" => Shape::Numbers(self.measures(&self.parameter(self.along))?),
             "from" | "to" => match self.command {
                 "law" => Shape::Numbers(Kind::Velocity),
                 "fit" => Shape::Times,
@@ -247,6 +249,17 @@ impl<'a> Made<'a> {
             Shape::Along => return self.along(value),
             Shape::In => return self.within(value),
             Shape::Pairs => return self.pairs(value),
+            Shape::At => {
+                let along = self.context.along;
+                let values = value
+                    .strip_prefix(along)
+                    .and_then(|rest| rest.strip_prefix('='))
+                    .unwrap_or(value);
+                match self.context.measures(&self.context.parameter(along)) {
+                    Some(kind) => self.numbers(values, kind, 1.0)?,
+                    None => values.to_owned(),
+                }
+            }
             Shape::Law => {
                 let names: Vec<&str> = value.split(',').map(symbols::law).collect();
                 names.join(",")
