@@ -1,4 +1,4 @@
-//! What the commands take, write and refuse of systems of one's own.
+//! What the commands take, write and refuse of user-defined systems.
 
 use crate::command;
 use crate::common::text::{SPINODAL, near};

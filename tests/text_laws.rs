@@ -1,4 +1,4 @@
-//! Friction laws of one's own from files in motion: those that are built in, written as files, give the same numbers.
+//! User-defined friction laws from files in motion: those that are built in, written as files, give the same numbers.
 
 use crate::command;
 use crate::common::text::{alike, law, near};

@@ -1,4 +1,4 @@
-//! What the commands take, draw and refuse of friction laws of one's own from files.
+//! What the commands take, draw and refuse of user-defined friction laws from files.
 
 use crate::command;
 use crate::common::ROOT;

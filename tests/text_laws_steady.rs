@@ -1,4 +1,4 @@
-//! Steady states and steady curves of friction laws of one's own from files: those of the built-in laws.
+//! Steady states and steady curves of user-defined friction laws from files: those of the built-in laws.
 
 use crate::command;
 use crate::common::text::{alike, law, near};

@@ -1,4 +1,4 @@
-//! Systems of one's own from files: against values that others computed, closed forms, and the built-in systems.
+//! User-defined systems from files: against values that others computed, closed forms, and the built-in systems.
 
 use crate::command;
 use crate::common::text::{SPINODAL, file, near};

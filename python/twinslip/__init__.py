@@ -1,4 +1,4 @@
-"""Sliding modes of interacting frictional interfaces, and small systems of one's own.
+"""Sliding modes of interacting frictional interfaces, and small user-defined systems.
 
 >>> import twinslip
 >>> slab = twinslip.System(driving=10, stiffness=0.14)

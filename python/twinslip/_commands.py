@@ -41,7 +41,7 @@ def _own(given: dict[str, Any]) -> dict[str, Any]:
 
 
 class Model:
-    """What slides and how it is driven, or a system of one's own."""
+    """What slides and how it is driven, or a user-defined system."""
 
     def __init__(
         self,
@@ -122,7 +122,7 @@ class Model:
             With ``si``: c_s in m/s, for the damping G/(2 c_s)
         **parameters : float
             Any other parameter by the name that JSON has; with _1 or _2 after it that of one
-            interface: ``residual_strength_2=0.002``. Those of a system of one's own by their own
+            interface: ``residual_strength_2=0.002``. Those of a user-defined system by their own
             names.
 
         Raises

@@ -150,7 +150,7 @@ class Orbit(Result):
     period : Uncertain
         The period [L/V*; s in SI].
     point : ndarray
-        A point of it: tau and ln psi of each interface, or the states of a system of one's own.
+        A point of it: tau and ln psi of each interface, or the states of a user-defined system.
     multipliers : ndarray of complex
         Its Floquet multipliers, the trivial one first.
     log_multipliers : list of Record

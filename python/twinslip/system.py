@@ -1,4 +1,4 @@
-"""Systems: what slides, or a small system of one's own."""
+"""Systems: what slides, or a small user-defined system."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ __all__ = ["System"]
 
 
 class System(Commands, Model):
-    """What slides and how it is driven, or a small system of one's own; its methods are the commands.
+    """What slides and how it is driven, or a small user-defined system; its methods are the commands.
 
     A system is a value: it holds no memory of what was computed, can be compared, pickled, and used by many threads at once. Two interfaces
     with the paper's law are ``System(driving=10, stiffness=0.14)``; others are made by :meth:`from_file` and :meth:`from_function`,
@@ -41,7 +41,7 @@ class System(Commands, Model):
 
     @classmethod
     def from_file(cls, path: Union[str, os.PathLike[str]], **parameters: float) -> System:
-        """A system of one's own from a TOML file, or one that is built in.
+        """A user-defined system from a TOML file, or one that is built in.
 
         Parameters
         ----------
@@ -73,7 +73,7 @@ class System(Commands, Model):
         start: Optional[Mapping[str, float]] = None,
         name: Optional[str] = None,
     ) -> System:
-        """A system of one's own from a Python function, which is called once, with symbols.
+        """A user-defined system from a Python function, which is called once, with symbols.
 
         Parameters
         ----------

@@ -18,7 +18,7 @@ use twinslip_tasks::scene::{
 };
 use twinslip_tasks::views::{self, Listed, Listing};
 
-/// A run that is planned, of interfaces or of a system of one's own.
+/// A run that is planned, of interfaces or of a user-defined system.
 pub trait PlannedRun {
     /// The plan in words.
     fn explain(&self, keeping: Keeping) -> String;

@@ -19,7 +19,7 @@ use twinslip_tasks::scene::{
 };
 use twinslip_tasks::views;
 
-/// A search for a periodic orbit, of interfaces or of a system of one's own.
+/// A search for a periodic orbit, of interfaces or of a user-defined system.
 pub trait OrbitSearch {
     /// The run along an orbit.
     type Run: PlannedRun;

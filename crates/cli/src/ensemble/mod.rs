@@ -216,7 +216,7 @@ impl Ensemble<'_> {
             && check.apart > 0
         {
             self.report.say(format!(
-                "the bands of derivatives and of draws differ at {} of {} numbers by more than a fifth of half their breadth, and by up to {:.2} of it at {place}: there the fit is too uncertain for bands that are linear in its parameters",
+                "the bands of derivatives and of draws differ at {} of {} numbers by more than a fifth of half their width, and by up to {:.2} of it at {place}: there the fit is too uncertain for bands that are linear in its parameters",
                 check.apart, check.numbers, check.largest
             ));
         }

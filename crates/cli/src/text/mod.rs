@@ -1,4 +1,4 @@
-//! The commands of a system of one's own.
+//! The commands of a user-defined system.
 
 pub mod equilibria;
 pub mod integrate;

@@ -1,4 +1,4 @@
-//! `twinslip section` of a system, or with a law, of one's own.
+//! `twinslip section` of a user-defined system, or with a user-defined law.
 
 use crate::Ending;
 use crate::call::Call;

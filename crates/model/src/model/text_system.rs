@@ -333,7 +333,7 @@ pub struct TextField<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> TextField<'a, N> {
-    /// The field of a system that stays with its owner, or of one's own.
+    /// The field of a system that stays with its owner, or an owned one.
     ///
     /// # Errors
     /// [`Error::Parameter`] where the system has more than N variables.

@@ -50,9 +50,9 @@ pub struct RunOutcome {
     /// What it cost, the second run of an error estimate included.
     pub work: Work,
     /// Estimate of the global error of the last row, the largest of all states, not below it: relative to stress and psi, and of a
-    /// system of one's own in units of 1 + |x|. `None` where not asked for or not known.
+    /// user-defined system in units of 1 + |x|. `None` where not asked for or not known.
     pub error_estimate: Option<f64>,
-    /// Estimates of the global errors of all states of a system of one's own at its end, not below them; `None` where not asked for or
+    /// Estimates of the global errors of all states of a user-defined system at its end, not below them; `None` where not asked for or
     /// not known, and of interfaces that are built in.
     pub errors: Option<Vec<f64>>,
     /// Why the error could not be estimated.

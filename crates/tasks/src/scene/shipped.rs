@@ -10,12 +10,12 @@ pub fn shipped(name: &str) -> Option<&'static str> {
     SCENES.get_file(format!("{name}.toml"))?.contents_utf8()
 }
 
-/// The text of the system of one's own that is built in under that name: `lorenz`, `lorenz.toml` or the path that its file has.
+/// The text of the built-in system file of that name: `lorenz`, `lorenz.toml` or the path that its file has.
 pub(super) fn shipped_system(path: &Path) -> Option<&'static str> {
     shipped_in("systems", path)
 }
 
-/// The same of a friction law of one's own.
+/// The text of the built-in law file of that name.
 pub(super) fn shipped_law(path: &Path) -> Option<&'static str> {
     shipped_in("laws", path)
 }

@@ -46,7 +46,7 @@ impl SlabOptions {
         self.evolution_effect.unwrap_or(EVOLUTION_EFFECT)
     }
 
-    /// The file of a law of one's own, or its text; `None` where the law is built in.
+    /// The file of a user-defined law, or its text; `None` where the law is built in.
     pub(super) fn law_file(&self) -> Option<&Path> {
         let path = Path::new(&self.law);
         let is_file = given_text(path).is_some()

@@ -114,7 +114,7 @@ impl Units {
         }
     }
 
-    /// Of a system of one's own: whatever its equations are in.
+    /// Of a user-defined system: whatever its equations are in.
     pub fn none() -> Self {
         Units {
             named: false,

@@ -1,4 +1,4 @@
-//! What systems of one's own show: columns and pictures.
+//! What user-defined systems show: columns and pictures.
 
 use super::diagram::value;
 use super::heat_map::{MOST_PANELS, states_in_time};

@@ -129,7 +129,7 @@ impl Command {
             let name = one.name;
             if let Some((option, _)) = varies.iter().find(|(_, varied)| varied == name) {
                 return wrong(format!(
-                    "`{option}` {name}: `ensemble` {of_file} has it fitted, and it can't vary too"
+                    "`{option}` {name}: it is fitted in `ensemble` {of_file}, and a fitted parameter cannot also vary"
                 ));
             }
             if is_given(slab, name)? {

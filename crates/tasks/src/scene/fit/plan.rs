@@ -142,7 +142,7 @@ impl FitPlan {
             })
             .collect();
         format!(
-            "plan of this command\n  {} samples from {} to {} s; {} stretches of the load point, the first at {:e} m/s\n  {}\n  power series with derivatives along each run; Levenberg-Marquardt; errors by the autoregression of the residuals",
+            "plan of this command\n  {} samples from {} to {} s; the load point in {} segments, the first at {:e} m/s\n  {}\n  power series with derivatives along each run; Levenberg-Marquardt; errors by the autoregression of the residuals",
             self.record.times.len(),
             self.record.times[0],
             self.record.times[self.record.times.len() - 1],

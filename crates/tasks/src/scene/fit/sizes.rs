@@ -54,7 +54,7 @@ pub(super) fn displacement(
         for x in moved.iter_mut() {
             *x = -*x;
         }
-        notes.push(format!("{own}, falls, and is counted downwards"));
+        notes.push(format!("{own} decreases, so its sign is reversed"));
     }
     let far = (last - first).abs();
     let speed = far / (times[times.len() - 1] - times[0]);

@@ -1,4 +1,4 @@
-//! Branches and curves in any parameter: of systems of one's own, and of interfaces in other parameters than V_H and K.
+//! Branches and curves in any parameter: of user-defined systems, and of interfaces in other parameters than V_H and K.
 
 mod branch;
 mod following;

@@ -1,4 +1,4 @@
-//! A system of one's own, to be continued in any of its parameters.
+//! A user-defined system, to be continued in any of its parameters.
 
 use super::{RowKind, Subject};
 use crate::scene::continuation::SearchOptions;
@@ -21,7 +21,7 @@ use twinslip::orbit::{
     ParametrisedField, WithinCluster, find_from, ranges,
 };
 
-/// A system of one's own, and where its equilibria and orbits are looked for.
+/// A user-defined system, and where its equilibria and orbits are looked for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TextSubject {
     /// The system.

@@ -1,4 +1,4 @@
-//! Equilibria of a system of one's own: the one near a start, or all in a box.
+//! Equilibria of a user-defined system: the one near a start, or all in a box.
 
 use super::model::{TextModel, number};
 use crate::scene::options::EquilibriaOptions;

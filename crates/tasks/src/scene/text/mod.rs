@@ -1,4 +1,4 @@
-//! Systems and friction laws of one's own, from a file: their equations read, and what the commands make of them.
+//! User-defined systems and friction laws, from a file: their equations read, and what the commands make of them.
 
 mod equilibria;
 mod file;

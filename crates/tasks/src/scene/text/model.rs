@@ -1,4 +1,4 @@
-//! A system of one's own with what the command line says about it.
+//! A user-defined system with what the command line says about it.
 
 use super::file::{SystemFile, TIME, TimeUse};
 use super::law_file::{DRIVING, LawFile};
@@ -24,7 +24,7 @@ use twinslip::number::Interval;
 /// No file is longer, in bytes.
 const LONGEST: u64 = 1 << 16;
 
-/// A system of one's own, or interfaces with a law of one's own; its parameters as they were set.
+/// A user-defined system, or interfaces with a user-defined law; its parameters as they were set.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TextModel {
     /// Its equations. Of interfaces the states are the stress and ln psi of each, and the first two parameters V_H and K.

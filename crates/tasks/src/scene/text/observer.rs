@@ -1,4 +1,4 @@
-//! What is seen of a run of a system of one's own: rows, slips and the points of a picture.
+//! What is seen of a run of a user-defined system: rows, slips and the points of a picture.
 
 use super::plan::{TextInstant, TextPlan};
 use crate::scene::column::Column;

@@ -1,4 +1,4 @@
-//! A periodic orbit of a system of one's own.
+//! A periodic orbit of a user-defined system.
 
 use super::model::TextModel;
 use super::plan::{TextPlan, text_columns};

@@ -1,4 +1,4 @@
-//! A run of a system of one's own from options: what is integrated, when there are rows, and what they hold.
+//! A run of a user-defined system from options: what is integrated, when there are rows, and what they hold.
 
 use super::model::TextModel;
 use super::slab::TextSlab;
@@ -19,7 +19,7 @@ use twinslip::model::TextSystem;
 /// When a run begins.
 const BEGIN: f64 = 0.0;
 
-/// A run of a system of one's own, checked.
+/// A run of a user-defined system, checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TextPlan {
     /// The system.

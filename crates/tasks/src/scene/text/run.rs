@@ -1,4 +1,4 @@
-//! A run of a system of one's own: from a plan to rows.
+//! A run of a user-defined system: from a plan to rows.
 
 use super::observer::TextObserver;
 use super::plan::TextPlan;

@@ -1,4 +1,4 @@
-//! The return map of a system of one's own.
+//! The return map of a user-defined system.
 
 use super::model::{TextModel, number};
 use super::plan::{atol_in_words, numerics};
@@ -27,7 +27,7 @@ use twinslip::section::{Periodic, SeriesVariables, Surface, Watching, usual_pati
 /// The longest time to wait for a return where nobody says otherwise, in that in which the liveliest state goes through its range.
 const PATIENCE: f64 = 1e4;
 
-/// A return map of a system of one's own, checked.
+/// A return map of a user-defined system, checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TextSectionPlan {
     /// The system.
