@@ -5,7 +5,8 @@
 
 use super::conditions::Condition;
 use super::continuation_point::TangentVector;
-use super::correct::{Corrector, Goal, Regular};
+use super::correct::{Corrector, Regular};
+use super::goal::Goal;
 use super::orbit_curve::{DirectedPoint, OrbitCurve, PalcSettings, WatchedFunction};
 use super::test_function::TestFunction;
 use crate::continuation::CurveStep;

@@ -9,6 +9,7 @@ use super::arc::Tracer;
 use super::conditions::{Condition, KnownSpectrum, checked, weights};
 use super::continuation_point::{ContinuationPoint, TangentVector};
 use super::family::ParametrisedField;
+use super::goal::Goal;
 use super::gradients::{carried, test_function};
 use super::linear::{Free, Linear};
 use super::multipliers::eigenvalues_of;
@@ -69,32 +70,6 @@ impl Regular {
     pub(crate) fn multipliers(&self) -> Option<Vec<LogEigenvalue>> {
         eigenvalues_of(&self.linear.maps)
     }
-}
-
-/// When a correction is at its end.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Goal {
-    /// The size of a correction that is the last. It is made, and the error left is of the order of its square.
-    pub done: f64,
-    /// Iterations, at most.
-    pub iterations: usize,
-    /// The largest correction.
-    pub largest: f64,
-}
-
-impl Goal {
-    /// For the steps of a continuation.
-    pub const STEP: Goal = Goal {
-        done: 1e-6,
-        iterations: 12,
-        largest: 1.0,
-    };
-    /// To the last digits.
-    pub const SHARP: Goal = Goal {
-        done: 2e-14,
-        iterations: 20,
-        largest: 1.0,
-    };
 }
 
 /// Corrections below this that have ceased to shrink are the flow's own noise; a first one below the second leaves nothing else.

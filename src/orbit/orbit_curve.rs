@@ -3,7 +3,8 @@
 use super::certain::{CLEAR, certain};
 use super::conditions::Condition;
 use super::continuation_point::{ContinuationPoint, TangentVector};
-use super::correct::{Corrector, Goal, Regular};
+use super::correct::{Corrector, Regular};
+use super::goal::Goal;
 use super::new_nodes::no_nodes;
 use super::test_function::TestFunction;
 use super::winding::{Turns, quarter_turn};

@@ -2,7 +2,8 @@
 
 use super::conditions::Condition;
 use super::continuation_point::{ContinuationPoint, TangentVector};
-use super::correct::{Corrector, Goal};
+use super::correct::Corrector;
+use super::goal::Goal;
 use super::orbit_curve::{Palc, PalcSettings};
 use super::shooting_nodes::ShootingNodes;
 use crate::error::Result;

@@ -15,6 +15,7 @@ mod orbit_point;
 mod orbits;
 mod runaway;
 mod splits;
+mod turning;
 
 pub use curves::equilibrium_curves;
 pub use equilibria::equilibria;

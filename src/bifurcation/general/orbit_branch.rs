@@ -4,6 +4,7 @@ use super::growing_period::{Folds, Limit, Periods, Saddle};
 use super::multipliers_together::{Outside, is_real};
 use super::orbit_point::{special_orbit, sum_of_pair};
 use super::orbits::OrbitBranches;
+use super::turning::{goes_on, turns};
 use super::{FREE, GeneralEvent, GeneralPoint, GeneralSolution, SAME, Teller};
 use crate::bifurcation::Label;
 use crate::bifurcation::orbits::normal_form::{Form, normal_form};
@@ -466,28 +467,6 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         }
         if ends { Break(()) } else { Continue(()) }
     }
-}
-
-/// Slopes of the parameter along the branch that are rounding: along a canard it turns within that.
-const ROUNDING: f64 = 1e-8;
-
-/// Whether the parameter has the same sense at both ends of a step.
-fn goes_on(from: &DirectedPoint, to: &DirectedPoint) -> bool {
-    let [from, to] = [from, to].map(|one| one.direction.parameters[FREE]);
-    from * to > 0.0 && from.abs().min(to.abs()) > ROUNDING
-}
-
-/// Whether the parameter turns at an orbit with a multiplier 1, on a step from one point to another: at a fold, where at a pitchfork it goes on.
-fn turns(from: &DirectedPoint, at: &DirectedPoint, to: &DirectedPoint) -> bool {
-    /// The slope at a fold, in parts of those at the ends of the step, where it changes its sign on the step, and where it is seen to turn twice.
-    const ONCE: f64 = 0.02;
-    const TWICE: f64 = 1e-3;
-    let [from, at, to] = [from, at, to].map(|one| one.direction.parameters[FREE]);
-    let [least, most] = [from.abs().min(to.abs()), from.abs().max(to.abs())];
-    // Just behind a fold the slope is small and grows.
-    let goes_on = from * to > 0.0 && from * at > 0.0 && 2.0 * at.abs() >= least;
-    let part = if from * to < 0.0 { ONCE } else { TWICE };
-    most < ROUNDING || (!goes_on && at.abs() < part * most)
 }
 
 /// Whether all multipliers of an orbit are about those at a Hopf point. Else the branch has yet to pass what makes them so.

@@ -1,0 +1,26 @@
+//! Whether the parameter turns on a step along a branch of orbits: at a fold it does, at a pitchfork it goes on.
+
+use super::FREE;
+use crate::orbit::DirectedPoint;
+
+/// Slopes of the parameter along the branch that are rounding: along a canard it turns within that.
+const ROUNDING: f64 = 1e-8;
+
+/// Whether the parameter has the same sense at both ends of a step.
+pub(super) fn goes_on(from: &DirectedPoint, to: &DirectedPoint) -> bool {
+    let [from, to] = [from, to].map(|one| one.direction.parameters[FREE]);
+    from * to > 0.0 && from.abs().min(to.abs()) > ROUNDING
+}
+
+/// Whether the parameter turns at an orbit with a multiplier 1, on a step from one point to another: at a fold, where at a pitchfork it goes on.
+pub(super) fn turns(from: &DirectedPoint, at: &DirectedPoint, to: &DirectedPoint) -> bool {
+    /// The slope at a fold, in parts of those at the ends of the step, where it changes its sign on the step, and where it is seen to turn twice.
+    const ONCE: f64 = 0.02;
+    const TWICE: f64 = 1e-3;
+    let [from, at, to] = [from, at, to].map(|one| one.direction.parameters[FREE]);
+    let [least, most] = [from.abs().min(to.abs()), from.abs().max(to.abs())];
+    // Just behind a fold the slope is small and grows.
+    let goes_on = from * to > 0.0 && from * at > 0.0 && 2.0 * at.abs() >= least;
+    let part = if from * to < 0.0 { ONCE } else { TWICE };
+    most < ROUNDING || (!goes_on && at.abs() < part * most)
+}
