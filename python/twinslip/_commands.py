@@ -267,7 +267,7 @@ class Commands:
         draw : dict of (A, B) or (A, B, "log"), optional
             Draw a constant of each of many interfaces at random between A and B, NAME=A:B, or log-
             uniformly, NAME=A:Blog; repeatable. NAME is healing_time, residual_strength,
-            evolution_effect, reference_friction or slip_length
+            direct_effect, evolution_effect, reference_friction, slip_length or normal_stress
         seed : int, optional
             With ``draw``: the random seed [default: 1]
         participation : bool, optional
@@ -319,15 +319,15 @@ class Commands:
         start : str or sequence of float, optional
             With ``system``: search near this point, the values of all states in order [default:
             its table start]. With a ``law`` from a file TAU,PSI1,PSI2 or near-symmetric:EPS. With
-            ``draw`` as in integrate [default: near-symmetric:0]
+            ``draw`` as in integrate [default: near-symmetric:0]: Newton's method finds the one
+            state near it
         solver : str, optional
             kinsol or newton; both give the same digits [default: kinsol; newton in a build without
             SUNDIALS]
         draw : dict of (A, B) or (A, B, "log"), optional
-            Draw a constant of each of many interfaces at random, as in integrate: NAME=A:B, or
-            log-uniformly NAME=A:Blog; repeatable. Finds one steady state of possibly many, to
-            which Newton's method converges from ``start``, and its number of growing eigenvalues;
-            with equal interfaces all are found
+            Draw a constant of each of many interfaces at random between A and B, NAME=A:B, or log-
+            uniformly, NAME=A:Blog; repeatable. NAME is healing_time, residual_strength,
+            direct_effect, evolution_effect, reference_friction, slip_length or normal_stress
         seed : int, optional
             With ``draw``: the random seed [default: 1]
         progress : bool, optional

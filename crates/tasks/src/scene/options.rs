@@ -246,25 +246,9 @@ pub struct IntegrateOptions {
     /// With --estimate-error: make the second run in double-double arithmetic (31 digits), some hundred times slower than taylor
     #[arg(long, requires = "estimate_error", help_heading = "Numerics")]
     pub reference: bool,
-    /// Draw a constant of each of many interfaces at random between A and B, NAME=A:B, or log-uniformly, NAME=A:Blog; repeatable. NAME is
-    /// healing_time, residual_strength, evolution_effect, reference_friction or slip_length
-    #[arg(
-        long,
-        value_name = "NAME=A:B",
-        value_delimiter = ',',
-        allow_hyphen_values = true,
-        help_heading = "Many interfaces"
-    )]
-    pub draw: Vec<String>,
-    /// With --draw: the random seed
-    #[arg(
-        long,
-        value_name = "SEED",
-        default_value_t = 1,
-        requires = "draw",
-        help_heading = "Many interfaces"
-    )]
-    pub seed: u64,
+    /// Constants that are drawn.
+    #[command(flatten)]
+    pub draws: DrawOptions,
     /// With --events of three or more interfaces: for each interface the number of events in which it slips, its slip, and its drawn
     /// constants. In JSON these are result.participation; else they go to FILE, or beside -o RUN.csv to RUN.participation.csv
     #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "", value_parser = path, requires = "events", help_heading = "Many interfaces")]
@@ -333,6 +317,30 @@ pub struct SectionOptions {
     pub numerics: NumericsOptions,
 }
 
+/// Constants of many interfaces that are drawn at random.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+pub struct DrawOptions {
+    /// Draw a constant of each of many interfaces at random between A and B, NAME=A:B, or log-uniformly, NAME=A:Blog; repeatable. NAME is
+    /// healing_time, residual_strength, direct_effect, evolution_effect, reference_friction, slip_length or normal_stress
+    #[arg(
+        long,
+        value_name = "NAME=A:B",
+        value_delimiter = ',',
+        allow_hyphen_values = true,
+        help_heading = "Many interfaces"
+    )]
+    pub draw: Vec<String>,
+    /// With --draw: the random seed
+    #[arg(
+        long,
+        value_name = "SEED",
+        default_value_t = 1,
+        requires = "draw",
+        help_heading = "Many interfaces"
+    )]
+    pub seed: u64,
+}
+
 /// `equilibria`: all steady states at a driving velocity.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct EquilibriaOptions {
@@ -353,7 +361,7 @@ pub struct EquilibriaOptions {
     )]
     pub within: Option<String>,
     /// With --system: search near this point, the values of all states in order [default: its table start]. With a --law from a file
-    /// TAU,PSI1,PSI2 or near-symmetric:EPS. With --draw as in integrate [default: near-symmetric:0]
+    /// TAU,PSI1,PSI2 or near-symmetric:EPS. With --draw as in integrate [default: near-symmetric:0]: Newton's method finds the one state near it
     #[arg(
         long,
         value_name = "START",
@@ -372,26 +380,9 @@ pub struct EquilibriaOptions {
     /// kinsol or newton; both give the same digits [default: kinsol; newton in a build without SUNDIALS]
     #[arg(long, value_name = "NAME", conflicts_with = "system", value_parser = Names::of(["kinsol", "newton"]), hide_possible_values = true, help_heading = "Numerics")]
     pub solver: Option<String>,
-    /// Draw a constant of each of many interfaces at random, as in integrate: NAME=A:B, or log-uniformly NAME=A:Blog; repeatable. Finds one
-    /// steady state of possibly many, to which Newton's method converges from --start, and its number of growing eigenvalues; with equal
-    /// interfaces all are found
-    #[arg(
-        long,
-        value_name = "NAME=A:B",
-        value_delimiter = ',',
-        allow_hyphen_values = true,
-        help_heading = "Many interfaces"
-    )]
-    pub draw: Vec<String>,
-    /// With --draw: the random seed
-    #[arg(
-        long,
-        value_name = "SEED",
-        default_value_t = 1,
-        requires = "draw",
-        help_heading = "Many interfaces"
-    )]
-    pub seed: u64,
+    /// Constants that are drawn.
+    #[command(flatten)]
+    pub draws: DrawOptions,
 }
 
 /// `orbit`: a periodic orbit.

@@ -49,24 +49,29 @@ impl TimeUnit {
         seconds: 1.0,
     };
 
-    /// All units; a year has 365.25 days.
+    /// The hour.
+    pub(super) const HOUR: TimeUnit = TimeUnit {
+        name: "hour",
+        inverse: "1/hour",
+        seconds: 3600.0,
+    };
+    /// The day.
+    pub(super) const DAY: TimeUnit = TimeUnit {
+        name: "day",
+        inverse: "1/day",
+        seconds: 86_400.0,
+    };
+    /// The year, of 365.25 days.
+    pub(super) const YEAR: TimeUnit = TimeUnit {
+        name: "year",
+        inverse: "1/year",
+        seconds: 31_557_600.0,
+    };
     const ALL: [TimeUnit; 4] = [
         TimeUnit::SECOND,
-        TimeUnit {
-            name: "hour",
-            inverse: "1/hour",
-            seconds: 3600.0,
-        },
-        TimeUnit {
-            name: "day",
-            inverse: "1/day",
-            seconds: 86_400.0,
-        },
-        TimeUnit {
-            name: "year",
-            inverse: "1/year",
-            seconds: 31_557_600.0,
-        },
+        TimeUnit::HOUR,
+        TimeUnit::DAY,
+        TimeUnit::YEAR,
     ];
 
     /// The names by which the command line knows them.
@@ -76,7 +81,7 @@ impl TimeUnit {
     };
 
     /// Its length in seconds.
-    pub(super) fn seconds(self) -> f64 {
+    pub(super) const fn seconds(self) -> f64 {
         self.seconds
     }
 

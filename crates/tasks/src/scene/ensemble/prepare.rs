@@ -99,7 +99,7 @@ impl Command {
                 options.resume.is_some() || options.shard.is_some(),
                 options.basin,
             ),
-            Command::Equilibria(options) => (false, !options.draw.is_empty()),
+            Command::Equilibria(options) => (false, !options.draws.draw.is_empty()),
             _ => (false, false),
         };
         if resumes {

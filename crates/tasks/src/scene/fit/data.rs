@@ -4,7 +4,8 @@ use super::heading::Heading;
 use super::options::FitOptions;
 use super::sizes;
 use super::table::Table;
-use super::unit::Measure;
+use super::unit::factor;
+use crate::scene::words::Kind;
 use twinslip::error::{Error, Result};
 use twinslip::friction::positive;
 
@@ -129,22 +130,22 @@ impl Measured {
             let mut own = asked.into_iter().filter(|(at, _)| *at == Some(place));
             own.find_map(|(_, text)| Heading::of(text.as_deref()?).unit)
         };
-        let unit = |place: usize, measure: Measure| -> Result<Option<f64>> {
+        let unit = |place: usize, kind: Kind| -> Result<Option<f64>> {
             let heading = table.headings.get(place);
             let name = heading.map_or("", |one| &one.name);
             let explicit = asked_unit(place).or(heading.and_then(|one| one.unit.clone()));
             if explicit.is_some() {
-                return measure.factor(explicit.as_deref(), name).map(Some);
+                return factor(kind, explicit.as_deref(), name).map(Some);
             }
             let suffix = heading.and_then(Heading::stated);
-            Ok(suffix.and_then(|unit| measure.factor(Some(unit), name).ok()))
+            Ok(suffix.and_then(|unit| factor(kind, Some(unit), name).ok()))
         };
-        let column = |place: usize, what: &str, measure: Measure| -> Result<Vec<f64>> {
-            let factor = unit(place, measure)?.unwrap_or(1.0);
+        let column = |place: usize, what: &str, kind: Kind| -> Result<Vec<f64>> {
+            let size = unit(place, kind)?.unwrap_or(1.0);
             let numbers = table.numbers(place, what)?;
-            Ok(numbers.into_iter().map(|x| x * factor).collect())
+            Ok(numbers.into_iter().map(|x| x * size).collect())
         };
-        let times = column(time, "time", Measure::Time)?;
+        let times = column(time, "time", Kind::Time)?;
         ascend(&table, &times)?;
         let rows = window(options, &table, &times)?;
         let cut = |all: Vec<f64>| -> Vec<f64> { rows.iter().map(|&row| all[row]).collect() };
@@ -156,12 +157,12 @@ impl Measured {
         let mut notes = Vec::new();
         let given = options.normal_stress;
         let given = given.map(|x| positive("normal-stress", x)).transpose()?;
-        let of_shear = unit(friction, Measure::Stress).ok().flatten();
+        let of_shear = unit(friction, Kind::Stress).ok().flatten();
         let normal_stress = match normal {
             Some(place) => {
-                let mut values = cut(column(place, "normal stress", Measure::Stress)?);
+                let mut values = cut(column(place, "normal stress", Kind::Stress)?);
                 let own = format!("{}: the normal stress, column {}", table.file, name(place));
-                let is_stated = unit(place, Measure::Stress)?.is_some();
+                let is_stated = unit(place, Kind::Stress)?.is_some();
                 match of_shear.filter(|_| !is_stated) {
                     Some(factor) => {
                         values.iter_mut().for_each(|sigma| *sigma *= factor);
@@ -179,7 +180,7 @@ impl Measured {
             None => None,
         };
         let friction_values = if of_shear.is_some() {
-            let shear = cut(column(friction, "shear stress", Measure::Stress)?);
+            let shear = cut(column(friction, "shear stress", Kind::Stress)?);
             let by = |i: usize| {
                 match (given, &normal_stress) {
                 (Some(sigma), _) => Ok(sigma),
@@ -195,7 +196,7 @@ impl Measured {
                 .map(|(i, tau)| Ok(tau / by(i)?))
                 .collect::<Result<_>>()?
         } else {
-            cut(column(friction, "friction", Measure::Ratio)?)
+            cut(column(friction, "friction", Kind::Number)?)
         };
         let weights = match &options.weights {
             None => vec![1.0; rows.len()],
@@ -207,8 +208,8 @@ impl Measured {
         let displacement_values = match displacement {
             None => None,
             Some(place) => {
-                let mut moved = cut(column(place, "displacement", Measure::Length)?);
-                let is_stated = unit(place, Measure::Length)?.is_some();
+                let mut moved = cut(column(place, "displacement", Kind::Length)?);
+                let is_stated = unit(place, Kind::Length)?.is_some();
                 let own = format!("{}: the displacement, column {}", table.file, name(place));
                 notes.extend(sizes::displacement(&times, &mut moved, &own, is_stated)?);
                 Some(moved)

@@ -2,7 +2,7 @@
 
 use super::cells::Separator;
 use super::data::is_known;
-use super::unit::Measure;
+use super::unit::is_unit;
 
 /// A column as its header has it.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,7 +28,7 @@ impl Heading {
         let name = name.trim().trim_end_matches('_').to_owned();
         let parts = name.rsplit_once(['_', ' ', ',', '/', '-', '.']);
         let suffix = parts
-            .filter(|(stem, unit)| !stem.is_empty() && Measure::is_unit(unit))
+            .filter(|(stem, unit)| !stem.is_empty() && is_unit(unit))
             .map(|(stem, unit)| (stem.trim().to_owned(), unit.to_owned()));
         Heading { name, unit, suffix }
     }
@@ -87,8 +87,11 @@ pub(super) fn headings(
     let Some(at) = best else { return Vec::new() };
     let mut headings: Vec<Heading> = below[at].iter().map(|cell| Heading::of(cell)).collect();
     let bare = |cell: &String| cell.trim_matches(['(', ')', '[', ']']).to_owned();
-    let is_unit = |cell: &String| Measure::is_unit(&bare(cell)) || cell.starts_with(['(', '[']);
-    if let Some(units) = below.get(at + 1).filter(|cells| cells.iter().any(is_unit)) {
+    let may_be_unit = |cell: &String| is_unit(&bare(cell)) || cell.starts_with(['(', '[']);
+    if let Some(units) = below
+        .get(at + 1)
+        .filter(|cells| cells.iter().any(may_be_unit))
+    {
         for (heading, unit) in headings.iter_mut().zip(units) {
             let unit = Some(bare(unit)).filter(|unit| !unit.is_empty());
             heading.unit = heading.unit.take().or(unit);

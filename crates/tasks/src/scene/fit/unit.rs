@@ -1,89 +1,39 @@
 //! The units of laboratories, in SI.
 
+use crate::scene::words::Kind;
 use twinslip::error::{Error, Result};
 
-/// What a column measures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Measure {
-    /// In s.
-    Time,
-    /// In m.
-    Length,
-    /// In Pa.
-    Stress,
-    /// No unit.
-    Ratio,
+/// Units of numbers without one.
+const RATIOS: [(&str, f64); 4] = [("1", 1.0), ("-", 1.0), ("none", 1.0), ("%", 1e-2)];
+
+/// Whether it is the unit of a time, a length or a stress.
+pub(super) fn is_unit(unit: &str) -> bool {
+    let all = [Kind::Time, Kind::Length, Kind::Stress];
+    all.iter().any(|kind| kind.size(unit.trim()).is_some())
 }
 
-/// Names of units, and how large they are in SI.
-type Names = &'static [(&'static str, f64)];
-
-const TIMES: Names = &[
-    ("s", 1.0),
-    ("sec", 1.0),
-    ("seconds", 1.0),
-    ("ms", 1e-3),
-    ("min", 60.0),
-    ("minutes", 60.0),
-    ("h", 3600.0),
-    ("hours", 3600.0),
-];
-const LENGTHS: Names = &[
-    ("m", 1.0),
-    ("cm", 1e-2),
-    ("mm", 1e-3),
-    ("um", 1e-6),
-    ("µm", 1e-6),
-    ("μm", 1e-6),
-    ("micron", 1e-6),
-    ("microns", 1e-6),
-    ("micrometers", 1e-6),
-    ("micrometres", 1e-6),
-    ("nm", 1e-9),
-];
-const STRESSES: Names = &[
-    ("Pa", 1.0),
-    ("kPa", 1e3),
-    ("MPa", 1e6),
-    ("GPa", 1e9),
-    ("bar", 1e5),
-];
-const RATIOS: Names = &[("1", 1.0), ("-", 1.0), ("none", 1.0), ("%", 1e-2)];
-
-impl Measure {
-    fn names(self) -> Names {
-        match self {
-            Measure::Time => TIMES,
-            Measure::Length => LENGTHS,
-            Measure::Stress => STRESSES,
-            Measure::Ratio => RATIOS,
-        }
-    }
-
-    /// Whether it is the unit of any measure but a ratio.
-    pub fn is_unit(unit: &str) -> bool {
-        let all = [Measure::Time, Measure::Length, Measure::Stress];
-        all.iter().any(|one| one.factor(Some(unit), "").is_ok())
-    }
-
-    /// The size of a unit in SI; that of SI where a column says none.
-    ///
-    /// # Errors
-    /// [`Error::Input`] for a unit that is not known, with those that are.
-    pub fn factor(self, unit: Option<&str>, column: &str) -> Result<f64> {
-        let Some(unit) = unit else { return Ok(1.0) };
-        let unit = unit.trim();
-        let exactly = self.names().iter().find(|(name, _)| *name == unit);
-        let same = |(name, _): &&(&str, f64)| name.eq_ignore_ascii_case(unit);
-        let found = exactly.or_else(|| self.names().iter().find(same));
-        found.map(|(_, factor)| *factor).ok_or_else(|| {
-            let known: Vec<&str> = self.names().iter().map(|(name, _)| *name).collect();
-            Error::Input(format!(
-                "the unit {unit:?} of the column {column} is none of {}",
-                known.join(", ")
-            ))
-        })
-    }
+/// The size in SI of the unit of a column that measures this; that of SI where the column says none.
+///
+/// # Errors
+/// [`Error::Input`] for a unit that is not known, with those that are.
+pub(super) fn factor(kind: Kind, unit: Option<&str>, column: &str) -> Result<f64> {
+    let Some(unit) = unit else { return Ok(1.0) };
+    let unit = unit.trim();
+    let ratio = RATIOS.iter().find(|(name, _)| *name == unit);
+    let found = match kind {
+        Kind::Number => ratio.map(|(_, size)| *size),
+        _ => kind.size(unit),
+    };
+    found.ok_or_else(|| {
+        let known: Vec<&str> = match kind {
+            Kind::Number => RATIOS.iter().map(|(name, _)| *name).collect(),
+            _ => kind.names().collect(),
+        };
+        Error::Input(format!(
+            "the unit {unit:?} of the column {column} is none of {}",
+            known.join(", ")
+        ))
+    })
 }
 
 /// A stiffness: `1.2e9` in Pa/m, or friction per length, `0.003/um`.
@@ -115,8 +65,7 @@ impl GivenStiffness {
         match text.split_once('/') {
             None => Ok(GivenStiffness::OfStress(value(text)?)),
             Some((number, unit)) => {
-                let of = LENGTHS.iter().find(|(name, _)| *name == unit.trim());
-                let (_, length) = of.ok_or_else(wrong)?;
+                let length = Kind::Length.size(unit.trim()).ok_or_else(wrong)?;
                 Ok(GivenStiffness::OfFriction(value(number)? / length))
             }
         }

@@ -60,7 +60,7 @@ pub struct SteadyInterface {
 impl ManyEquilibriumPlan {
     /// Whether the options are of interfaces of this kind.
     pub fn is_of(options: &EquilibriaOptions) -> bool {
-        !options.draw.is_empty()
+        !options.draws.draw.is_empty()
     }
 
     /// Checks the options.
@@ -90,8 +90,7 @@ impl ManyEquilibriumPlan {
         let setup = Setup::new(&Asked {
             model: &model,
             loading: Loading::new(driving, stiffness)?,
-            draw: &options.draw,
-            seed: options.seed,
+            draws: &options.draws,
             start: Some(options.start.as_deref().unwrap_or("near-symmetric:0")),
             processes: Processes::One,
         })?;

@@ -87,7 +87,7 @@ impl ManyPlan {
         // The events of one or two have a meaning of their own, and laws from files have none.
         let listed = options.events.is_some() && slab.law_file().is_none();
         let least = if listed { 3 } else { MANY };
-        !options.draw.is_empty() || slab.count() >= least && !named
+        !options.draws.draw.is_empty() || slab.count() >= least && !named
     }
 
     /// Checks the options, of which this one of the processes computes a share.
@@ -107,8 +107,7 @@ impl ManyPlan {
         } = Setup::new(&Asked {
             model: &model,
             loading,
-            draw: &options.draw,
-            seed: options.seed,
+            draws: &options.draws,
             start: options.start.as_deref().or(usual_start(options)),
             processes,
         })?;
@@ -255,7 +254,7 @@ impl Described for ManyPlan {
 
 /// Where so few interfaces start that other engines could take them: as there. Whether events are asked for moves no start.
 fn usual_start(options: &IntegrateOptions) -> Option<&'static str> {
-    let few = options.draw.is_empty() && options.model.slab.count() < MANY;
+    let few = options.draws.draw.is_empty() && options.model.slab.count() < MANY;
     few.then_some(USUAL_START)
 }
 

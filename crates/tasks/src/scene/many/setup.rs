@@ -1,7 +1,7 @@
 //! Many interfaces from options: what they are, which constants are drawn, and where they start.
 
 use super::draw::{Draw, Drawn, InUnits};
-use crate::scene::options::{ModelOptions, SlabOptions};
+use crate::scene::options::{DrawOptions, ModelOptions, SlabOptions};
 use crate::scene::plan::{NEAR_SYMMETRIC, USUAL_START};
 use crate::scene::system::HEALING_TIME;
 use crate::scene::text::SPREAD;
@@ -19,10 +19,8 @@ pub(super) struct Asked<'a> {
     pub model: &'a ModelOptions,
     /// V_H and K.
     pub loading: Loading,
-    /// The constants that are drawn.
-    pub draw: &'a [String],
-    /// By this seed.
-    pub seed: u64,
+    /// The constants that are drawn, and the seed.
+    pub draws: &'a DrawOptions,
     /// Where the interfaces start.
     pub start: Option<&'a str>,
     /// Who holds them.
@@ -50,7 +48,7 @@ impl Setup {
         let Asked {
             model,
             loading,
-            seed,
+            draws: DrawOptions { draw, seed },
             ..
         } = *asked;
         refused(&model.slab)?;
@@ -58,14 +56,14 @@ impl Setup {
         if count == 0 {
             return Err(Error::parameter("interfaces", count, "at least 1"));
         }
-        let draws = asked.draw.iter().map(|text| Draw::read(text));
+        let draws = draw.iter().map(|text| Draw::read(text));
         let draws = draws.collect::<Result<Vec<Draw>>>()?;
         for draw in &draws {
             draw.is_not_given(model)?;
         }
         let share = Share::new(count, asked.processes);
         let mut drawn: Vec<Drawn> = draws.iter().map(Draw::none_drawn).collect();
-        let by = (&draws[..], seed);
+        let by = (&draws[..], *seed);
         let first = interfaces(&model.slab, by, 0..1, &mut drawn.clone())?[0];
         let all = interfaces(&model.slab, by, share.held(), &mut drawn)?;
         let interfaces = if draws.is_empty() {

@@ -9,25 +9,14 @@ mod symbols;
 mod unit;
 
 pub(super) use merge::merged;
-pub(super) use unit::with_unit;
+pub(super) use unit::{Kind, with_unit};
 
+use super::command::Command;
 use super::ensemble::implied;
 use super::units::TimeUnit;
+use clap::Subcommand;
 use twinslip::friction::AnyLaw;
-use unit::Kind;
 
-/// The commands whose options these are.
-const COMMANDS: [&str; 9] = [
-    "law",
-    "integrate",
-    "equilibria",
-    "orbit",
-    "section",
-    "branch",
-    "locus",
-    "sweep",
-    "fit",
-];
 const SI: &str = "--si";
 
 /// What an option takes, where that is more than a text.
@@ -77,7 +66,7 @@ pub fn plain<S: AsRef<str>>(words: &[S]) -> Result<Plain, String> {
         with_unit: None,
         without_unit: Vec::new(),
     };
-    let Some(command) = words.get(1).filter(|word| COMMANDS.contains(word)) else {
+    let Some(command) = words.get(1).filter(|word| Command::has_subcommand(word)) else {
         return Ok(line);
     };
     let context = Context::of(command, &words);

@@ -4,7 +4,7 @@ use crate::scene::units::TimeUnit;
 
 /// What a number measures, by its unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(in super::super) enum Kind {
     Number,
     Length,
     Time,
@@ -50,38 +50,67 @@ struct Unit {
     ratio: (f64, f64),
 }
 
-/// The units that products and quotients are made of. Seconds are by their number, all others by the power of ten.
+/// The units that products and quotients are made of, and that heads of columns have: name, kind, power of ten, and a number of seconds beside that.
+const UNITS: [(&str, Kind, i32, f64); 28] = [
+    ("m", Kind::Length, 0, 1.0),
+    ("km", Kind::Length, 3, 1.0),
+    ("cm", Kind::Length, -2, 1.0),
+    ("mm", Kind::Length, -3, 1.0),
+    ("um", Kind::Length, -6, 1.0),
+    // The micro sign and the Greek letter look the same.
+    ("\u{b5}m", Kind::Length, -6, 1.0),
+    ("\u{3bc}m", Kind::Length, -6, 1.0),
+    ("micron", Kind::Length, -6, 1.0),
+    ("microns", Kind::Length, -6, 1.0),
+    ("micrometers", Kind::Length, -6, 1.0),
+    ("micrometres", Kind::Length, -6, 1.0),
+    ("nm", Kind::Length, -9, 1.0),
+    ("Pa", Kind::Stress, 0, 1.0),
+    ("kPa", Kind::Stress, 3, 1.0),
+    ("MPa", Kind::Stress, 6, 1.0),
+    ("GPa", Kind::Stress, 9, 1.0),
+    ("bar", Kind::Stress, 5, 1.0),
+    ("s", Kind::Time, 0, 1.0),
+    ("sec", Kind::Time, 0, 1.0),
+    ("seconds", Kind::Time, 0, 1.0),
+    ("ms", Kind::Time, -3, 1.0),
+    ("min", Kind::Time, 0, 60.0),
+    ("minutes", Kind::Time, 0, 60.0),
+    ("h", Kind::Time, 0, TimeUnit::HOUR.seconds()),
+    ("hours", Kind::Time, 0, TimeUnit::HOUR.seconds()),
+    ("d", Kind::Time, 0, TimeUnit::DAY.seconds()),
+    ("yr", Kind::Time, 0, TimeUnit::YEAR.seconds()),
+    ("days", Kind::Time, 0, TimeUnit::DAY.seconds()),
+];
+
 fn base(name: &str) -> Option<Unit> {
-    let [length, time, stress] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
-    let decimal = |dimensions, power| Unit {
-        dimensions,
+    let unit = |kind: Kind, power, seconds| Unit {
+        dimensions: kind.dimensions(),
         power,
-        ratio: (1.0, 1.0),
-    };
-    let seconds = |seconds| Unit {
         ratio: (seconds, 1.0),
-        ..decimal(time, 0)
     };
-    Some(match name {
-        "km" => decimal(length, 3),
-        "m" => decimal(length, 0),
-        "cm" => decimal(length, -2),
-        "mm" => decimal(length, -3),
-        // The micro sign and the Greek letter look the same.
-        "um" | "\u{b5}m" | "\u{3bc}m" => decimal(length, -6),
-        "nm" => decimal(length, -9),
-        "GPa" => decimal(stress, 9),
-        "MPa" => decimal(stress, 6),
-        "bar" => decimal(stress, 5),
-        "kPa" => decimal(stress, 3),
-        "Pa" => decimal(stress, 0),
-        "ms" => decimal(time, -3),
-        "min" => seconds(60.0),
-        "h" => seconds(TimeUnit::named("hour").ok()?.seconds()),
-        "d" => seconds(TimeUnit::named("day").ok()?.seconds()),
-        "yr" => seconds(TimeUnit::named("year").ok()?.seconds()),
-        name => seconds(TimeUnit::named(name).ok()?.seconds()),
-    })
+    let known = UNITS.iter().find(|(known, ..)| *known == name);
+    match known {
+        Some((_, kind, power, seconds)) => Some(unit(*kind, *power, *seconds)),
+        None => Some(unit(Kind::Time, 0, TimeUnit::named(name).ok()?.seconds())),
+    }
+}
+
+impl Kind {
+    /// The names of its units.
+    pub(in super::super) fn names(self) -> impl Iterator<Item = &'static str> {
+        let of_kind = UNITS.iter().filter(move |(_, kind, ..)| *kind == self);
+        let times = TimeUnit::NAMES.into_iter().skip(1);
+        let times = times.filter(move |_| self == Kind::Time);
+        of_kind.map(|(name, ..)| *name).chain(times)
+    }
+
+    /// The size in SI of the unit of this name, in whatever case where no other has exactly that name.
+    pub(in super::super) fn size(self, name: &str) -> Option<f64> {
+        let exactly = self.names().find(|known| *known == name);
+        let found = exactly.or_else(|| self.names().find(|known| known.eq_ignore_ascii_case(name)));
+        base(found?)?.in_si("1")
+    }
 }
 
 impl Unit {
