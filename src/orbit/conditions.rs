@@ -1,4 +1,4 @@
-//! What an orbit is to meet, and how far it has to move for that.
+//! Conditions on a periodic orbit of a family, and how far the orbit has to move to meet them.
 
 use super::continuation_point::{ContinuationPoint, TangentVector};
 use super::gradients::test_function;
@@ -6,14 +6,14 @@ use super::test_function::{Spectrum, TestFunction};
 use crate::error::Result;
 use nalgebra::{Matrix2, Vector2};
 
-/// What an orbit is to meet.
+/// A condition on a periodic orbit.
 #[derive(Debug, Clone, Copy)]
 pub enum Condition<'a> {
-    /// To lie in the plane through a site with as many nodes, across a direction.
+    /// It lies in the plane through another orbit with as many nodes, normal to a direction.
     Plane(&'a TangentVector, &'a ContinuationPoint),
-    /// The coordinate of this parameter to have this value.
+    /// The coordinate of this parameter has this value.
     Parameter(usize, f64),
-    /// A bifurcation.
+    /// A test function vanishes.
     TestFunction(TestFunction),
 }
 

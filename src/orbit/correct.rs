@@ -84,8 +84,8 @@ const ARRIVED: f64 = 1e-4;
 /// Corrections larger than this are made with coarse flows, of orbits that are larger than this.
 const FAR: f64 = 1e-4;
 const LARGE: f64 = 0.1;
-/// Newton's method gets nowhere where a correction is larger than the first of these and, from this iteration on, than the second of them times the
-/// one two iterations before.
+/// Newton's method is given up if, from this iteration on, a correction exceeds both the first of these and the second times the correction two
+/// iterations before.
 const STUCK: (f64, f64, usize) = (1e-2, 0.5, 4);
 /// A correction that shrinks by less than this asks for new gradients.
 const SLOW: f64 = 0.02;
@@ -287,7 +287,7 @@ impl<'a> Corrector<'a> {
         let again = coarse.then(|| guess.clone());
         let from = (planes, guess);
         let mut found = self.newton(from, free, conditions, (goal, coarse), &mut reached);
-        // What was as large as this at last has not failed by how coarse the flows are.
+        // If the last correction was larger than this, coarse flows are not the cause of the failure.
         let by_flows = reached.0 == 0 || reached.1 < STUCK.0;
         if let (None, Some(again), true) = (&found, again, by_flows) {
             let from = (planes, again);

@@ -1,6 +1,6 @@
 //! When Newton's method for a periodic orbit ends.
 
-/// When a correction is at its end.
+/// When Newton's method has converged, and when it is given up.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Goal {
     /// The size of a correction that is the last. It is made, and the error left is of the order of its square.

@@ -15,7 +15,7 @@ pub(super) const TOLERANCE: f64 = 1e-11;
 const DERIVATIVE_PER_RTOL: f64 = 30.0;
 const ROUNDS: usize = 3;
 const CHANGE: f64 = 3.0;
-/// A step that is longer than this part of the one before comes no nearer.
+/// Newton's method has not come nearer if a step is longer than this part of the one before.
 const NEARER: f64 = 0.1;
 
 /// What is known of an orbit.
@@ -79,13 +79,13 @@ pub(super) fn around(
             break;
         };
         let part = left.amax() / step;
-        // What mu still changes by, by how much it has changed over the last step to the point. The step to the first point was made on a coarser map: by that
-        // alone it may be much shorter than what is left.
+        // The change of mu that is left is extrapolated from its change over the last step. The step to the first point was made with a coarser map, and
+        // may be much shorter than the step that is left.
         let changes = |part: f64| CHANGE * (mu / before).ln().abs() * part;
         let here = Uncertain::new(mu.ln(), changes(part.min(1.0)) + error);
         let is_no_better = match round {
             0 => false,
-            // Where Newton's method comes no nearer what was left is noise, as of a stiff orbit, and the first point is as good.
+            // If Newton's method has come no nearer, the step was noise, as on a stiff orbit, and the first point is as good.
             1 => part > NEARER,
             _ => largest.is_some_and(|best| best.uncertainty <= here.uncertainty),
         };

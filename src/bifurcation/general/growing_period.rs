@@ -47,9 +47,9 @@ impl Folds {
         self.0.push([at, period]);
     }
 
-    /// Whether the branch goes to and fro ever less, as it does about a limit.
+    /// Whether the oscillation of the parameter shrinks from one fold to the next, as it does about a limit.
     pub fn close_in(&self) -> bool {
-        /// The way from one fold to the next, in parts of the way before.
+        /// The distance from one fold to the next, relative to the distance before.
         const LESS: f64 = 0.5;
         let Some([a, b, c]) = self.0.last_chunk() else {
             return false;

@@ -25,8 +25,8 @@ const STEPS: usize = 5000;
 /// How many of the last orbits of a branch may say nothing of its limit.
 const LEFT_OUT: usize = 4;
 
-/// Points of two kinds on one turn of a branch coincide where the parameter is the same to this part of itself, some orders above rounding: so which
-/// points are listed doesn't depend on that.
+/// Two special points of one turn coincide if their parameters differ by less than this part of the parameter. It is some orders above rounding, so
+/// that rounding does not decide which points are listed.
 const COINCIDE: f64 = 1e-12;
 
 /// One branch.
@@ -46,7 +46,7 @@ pub(super) struct OrbitBranch<'s, 'b, 'a> {
     /// What seems to be a fold there, as the parameter turns, but could not be found as one.
     unsure: Option<(GeneralPoint, Regular)>,
     outside: Outside,
-    /// The last special point of its orbits, and whether those of further turns are listed.
+    /// The label and parameter of the last fold, period doubling or pitchfork, and whether further ones are listed.
     last: Option<(Label, f64)>,
     are_listed: bool,
     /// While the parameter does not vary.
@@ -316,8 +316,8 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         found.is_some()
     }
 
-    /// Whether this special point and the one before are of another kind at one parameter, on a branch that goes to and fro about a limit that is known:
-    /// there each turn has both, ever nearer to each other.
+    /// Whether this special point and the previous one are of different kinds and have the same parameter, on a branch that oscillates about a known
+    /// limit. Near such a limit every turn has both points, ever closer together.
     fn turns_coincide(&mut self, now: (Label, f64), near: &Regular) -> bool {
         let before = self.last.replace(now);
         let coincides = |(label, at): (Label, f64)| {

@@ -1,9 +1,9 @@
-//! Whether the parameter turns on a step along a branch of orbits: at a fold it does, at a pitchfork it goes on.
+//! Distinguishes folds from pitchforks on a step along a branch of orbits: at a fold the parameter turns, at a pitchfork it does not.
 
 use super::FREE;
 use crate::orbit::DirectedPoint;
 
-/// Slopes of the parameter along the branch that are rounding: along a canard it turns within that.
+/// Slopes of the parameter along the branch below this are rounding. Along a canard the parameter turns with such slopes.
 const ROUNDING: f64 = 1e-8;
 
 /// Whether the parameter has the same sense at both ends of a step.
@@ -12,7 +12,7 @@ pub(super) fn goes_on(from: &DirectedPoint, to: &DirectedPoint) -> bool {
     from * to > 0.0 && from.abs().min(to.abs()) > ROUNDING
 }
 
-/// Whether the parameter turns at an orbit with a multiplier 1, on a step from one point to another: at a fold, where at a pitchfork it goes on.
+/// Whether the parameter turns at an orbit with a multiplier 1, on the step from one point to another.
 pub(super) fn turns(from: &DirectedPoint, at: &DirectedPoint, to: &DirectedPoint) -> bool {
     /// The slope at a fold, in parts of those at the ends of the step, where it changes its sign on the step, and where it is seen to turn twice.
     const ONCE: f64 = 0.02;
