@@ -101,7 +101,7 @@ fn short_help(command: &Command, examples: &str, options: &str) -> Option<String
     let count = all.iter().filter(|arg| arg.get_long().is_some()).count();
     let _ = writeln!(
         text,
-        "\n`twinslip {name} --help` has all {count} options and more examples."
+        "\n`twinslip {name} --help` has all {count} options."
     );
     Some(text)
 }
