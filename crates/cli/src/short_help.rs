@@ -99,10 +99,7 @@ fn short_help(command: &Command, examples: &str, options: &str) -> Option<String
         let _ = writeln!(text, "  {form:width$}  {}", gist(arg));
     }
     let count = all.iter().filter(|arg| arg.get_long().is_some()).count();
-    let _ = writeln!(
-        text,
-        "\n`twinslip {name} --help` has all {count} options."
-    );
+    let _ = writeln!(text, "\n`twinslip {name} --help` has all {count} options.");
     Some(text)
 }
 
