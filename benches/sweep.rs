@@ -16,8 +16,8 @@ fn map(n: usize, driving: (f64, f64), stiffness: (f64, f64)) -> SweepSettings {
         log: false,
     };
     SweepSettings {
-        law: AnyLaw::Spinodal(Parameters::heslot_1994().spinodal()),
         grid: Grid::Plane {
+            law: AnyLaw::Spinodal(Parameters::heslot_1994().spinodal()),
             driving: range(driving),
             stiffness: range(stiffness),
         },

@@ -18,8 +18,8 @@ fn law() -> AnyLaw {
 
 fn settings(driving: &str, stiffness: &str, starts: usize) -> SweepSettings {
     SweepSettings {
-        law: law(),
         grid: Grid::Plane {
+            law: law(),
             driving: Range::parse("driving", driving).unwrap(),
             stiffness: Range::parse("stiffness", stiffness).unwrap(),
         },
@@ -372,6 +372,7 @@ fn a_basin_has_both_attractors() {
     let loading = Loading::new(2.0, 0.1).unwrap();
     let settings = SweepSettings {
         grid: Grid::Basin {
+            law: law(),
             loading,
             state_1: states,
             state_2: states,
@@ -546,6 +547,7 @@ fn settings_refuse_nonsense() {
     assert!(good.checked().is_ok());
     let states = Range::parse("state-1", "0.1:1:2").unwrap();
     let basin = Grid::Basin {
+        law: law(),
         loading: Loading::new(0.2, 0.1).unwrap(),
         state_1: states,
         state_2: states,

@@ -1,180 +1,159 @@
 //! Aperiodic motion: runs that close in on nothing, which are tori, chaos, or neither yet.
 
-use super::classify::{Classified, Classifier, alike, begun, steady};
 use super::finite_difference_exponent::stretching;
-use super::flows::Flows;
+use super::judge::{Judge, Settled, alike, begun, steady};
 use super::watch::{SweepRun, see};
-use crate::field::{Vector, state, vector};
-use crate::integrate::{AnyField, Control};
-use crate::number::Uncertain;
+use crate::integrate::Control;
 use crate::section::{
-    Ended, FEWEST_FOR_EXPONENTS, FEWEST_RETURNS, IRREGULAR, REGULAR, Regime, Return, ReturnRecord,
-    Surface, Watching, aperiodic, points, record_finely, regularity, spectrum,
+    Ended, FEWEST_FOR_EXPONENTS, FEWEST_RETURNS, IRREGULAR, REGULAR, Regime, Return, Watching,
+    aperiodic, growth, points, record_finely, regularity, spectrum,
 };
 
 /// Returns without which neither torus nor chaos is told: those before are let pass.
-pub(super) const FEWEST_TO_WANDER: usize = 512;
+const FEWEST_TO_WANDER: usize = 512;
 /// Returns before exponents are asked for.
-pub(super) const FEWEST_TO_ASK: usize = 1024;
+const FEWEST_TO_ASK: usize = 1024;
 /// Over how many returns exponents are taken: if these don't tell, twice as many.
 const FOR_EXPONENTS: std::ops::RangeInclusive<usize> = 256..=1024;
 
-impl Classifier {
-    /// A torus or chaos, or why nothing can be said.
-    pub(super) fn wandering(
-        &self,
-        run: &SweepRun,
-        flows: &mut Flows,
-    ) -> std::result::Result<Classified, &'static str> {
-        let n = run.returns().len();
-        let last = run.recorder.returns.len() >= self.settings.max_returns;
-        if n < FEWEST_TO_WANDER && !last {
-            return Err("too early");
-        }
-        let half = &run.returns()[n / 2..];
-        if half.len() < FEWEST_RETURNS / 2 {
-            return Err("too few returns since it was let go from an unstable orbit");
-        }
-        if half.iter().all(|at| alike(&at.state)) {
+/// Why nothing can be said.
+type Undecided = &'static str;
+
+/// A torus or chaos, or why nothing can be said. Where there is a stable steady state too, chaos may be but a way to it: it is waited for,
+/// and nothing said in the end.
+pub(super) fn wandering(judge: &mut Judge, run: &SweepRun) -> Result<Settled, Undecided> {
+    let settings = &judge.settings;
+    let (rtol, max_steps, lyapunov) = (settings.rtol, settings.max_steps, settings.lyapunov);
+    let n = run.returns().len();
+    let last = run.recorder.returns.len() >= settings.max_returns;
+    if n < FEWEST_TO_WANDER && !last {
+        return Err("too early");
+    }
+    let half = &run.returns()[n / 2..];
+    if half.len() < FEWEST_RETURNS / 2 {
+        return Err("too few returns since it was let go from an unstable state or orbit");
+    }
+    let plane = run.field.dimension() < 3;
+    if plane || (run.equal_parts && half.iter().all(|at| alike(&at.state))) {
+        return Err(
+            "its motion is plane, and so neither a torus nor chaos, and closes in on nothing yet; raise `max_returns`",
+        );
+    }
+    let seen = aperiodic(&run.surface, half, rtol, None);
+    if seen.regime == Regime::Torus {
+        return match lyapunov {
+            true => with_tangents(run, max_steps),
+            false => Ok(told(run, Regime::Torus)),
+        };
+    }
+    if n < FEWEST_TO_ASK && !last {
+        return Err("too early");
+    }
+    let disorder = regularity(&points(&run.surface, half));
+    if disorder > IRREGULAR {
+        if may_come_to_rest(run) {
             return Err(
-                "equal interfaces, whose motion is plane and so neither a torus nor chaos, close in on nothing yet; raise `max_returns`",
+                "its returns are irregular, but there is a stable steady state, to which they may lead; raise `max_returns`",
             );
         }
-        let seen = aperiodic(&run.surface, half, self.settings.rtol, None);
-        if seen.regime == Regime::Torus {
-            if self.settings.lyapunov {
-                return self.with_tangents(run);
-            }
-            return Ok(told(run, Regime::Torus, run.stress));
-        }
-        if n < FEWEST_TO_ASK && !last {
-            return Err("too early");
-        }
-        let disorder = regularity(&points(&run.surface, half));
-        if disorder > IRREGULAR {
-            return match self.chaos(run, flows) {
-                Some(told) => told,
-                None if last => self.with_tangents(run),
-                None => Err("runs beside it take another way"),
-            };
-        }
-        if disorder < REGULAR {
-            return self.with_tangents(run);
-        }
-        Err("the returns are neither regular nor irregular yet; raise `max_returns`")
-    }
-
-    /// Chaos, by the exponents along the last returns: of ever more, until they tell. `None` where no runs beside it can be
-    /// compared with it.
-    fn chaos(
-        &self,
-        run: &SweepRun,
-        flows: &mut Flows,
-    ) -> Option<std::result::Result<Classified, &'static str>> {
-        let all = run.returns();
-        let settled = all.len() / 2;
-        let mut count = *FOR_EXPONENTS.start();
-        loop {
-            count = count.min(settled).min(*FOR_EXPONENTS.end());
-            if count < FEWEST_FOR_EXPONENTS {
-                return Some(Err("too few returns for exponents; raise `max_returns`"));
-            }
-            let late: &[Return] = &all[all.len() - count..];
-            let found = stretching(run, late, flows, self.settings.rtol)?;
-            let made = aperiodic(&run.surface, late, self.settings.rtol, Some(found.known()));
-            if made.regime == Regime::Chaotic {
-                let mut told = told(run, Regime::Chaotic, run.stress);
-                told.row.lyapunov_max = found.across_flow();
-                return Some(Ok(told));
-            }
-            if count == settled || count == *FOR_EXPONENTS.end() {
-                return Some(Err(made.why.unwrap_or("its returns do not tell")));
-            }
-            count *= 2;
-        }
-    }
-
-    /// Records anew from where the run is, so finely that its tangents tell an exponent that vanishes.
-    fn with_tangents(&self, run: &SweepRun) -> std::result::Result<Classified, &'static str> {
-        let all = &run.recorder.returns;
-        let start = all
-            .last()
-            .map_or_else(|| vector(&run.state), |at| at.state.clone());
-        let watching = Watching {
-            returns: fine_returns(all.len()),
-            ..run.watching
+        return match chaos(judge, run) {
+            Some(told) => told,
+            None if last || run.lane.is_none() => with_tangents(run, max_steps),
+            None => Err("runs beside it take another way"),
         };
-        let at = (&run.field, &run.surface, &start);
-        let found = FineRun::of(at, &watching, self.settings.max_steps)?;
-        if let Some(equilibrium) = found.rests_at() {
-            return Ok(steady(run, equilibrium, true));
+    }
+    if disorder < REGULAR {
+        return with_tangents(run, max_steps);
+    }
+    Err("the returns are neither regular nor irregular yet; raise `max_returns`")
+}
+
+/// Chaos of two equal interfaces, by the exponents along the last returns: of ever more, until they tell. `None` where no runs beside it can be
+/// compared with it.
+fn chaos(judge: &mut Judge, run: &SweepRun) -> Option<Result<Settled, Undecided>> {
+    run.lane?;
+    let rtol = judge.settings.rtol;
+    let all = run.returns();
+    let settled = all.len() / 2;
+    let mut count = *FOR_EXPONENTS.start();
+    loop {
+        count = count.min(settled).min(*FOR_EXPONENTS.end());
+        if count < FEWEST_FOR_EXPONENTS {
+            return Some(Err("too few returns for exponents; raise `max_returns`"));
         }
-        let mut stress = run.stress;
-        for point in &found.recorded.waypoints {
-            see(&mut stress, point.state[0]);
+        let late: &[Return] = &all[all.len() - count..];
+        let found = stretching(run, late, &mut judge.flows, rtol)?;
+        let made = aperiodic(&run.surface, late, rtol, Some(found.known()));
+        if made.regime == Regime::Chaotic {
+            let mut told = told(run, Regime::Chaotic);
+            told.row.lyapunov_max = found.across_flow();
+            return Some(Ok(told));
         }
-        let (regime, exponent) = found.regime(&run.surface, &run.field)?;
-        let mut told = told(run, regime, stress);
-        told.row.returns += found.recorded.returns.len();
-        told.attractor = found.last().map(|at| state(at.state.as_slice()));
-        told.row.lyapunov_max = exponent;
-        Ok(told)
+        if count == settled || count == *FOR_EXPONENTS.end() {
+            return Some(Err(made.why.unwrap_or("its returns do not tell")));
+        }
+        count *= 2;
     }
 }
 
-/// Over how many returns tangents are taken of a run with so many.
-pub(super) fn fine_returns(all: usize) -> usize {
-    (all / 4).clamp(*FOR_EXPONENTS.start(), *FOR_EXPONENTS.end())
-}
-
-/// A run recorded so finely that its tangents tell an exponent that vanishes.
-pub(super) struct FineRun {
-    pub recorded: ReturnRecord,
-}
-
-impl FineRun {
-    pub fn of(
-        (field, surface, start): (&AnyField<'_>, &Surface, &Vector),
-        watching: &Watching,
-        max_steps: usize,
-    ) -> std::result::Result<Self, &'static str> {
-        let see_all = &mut |_: usize, _: Option<&_>| Control::Continue;
-        let recorded = record_finely(field, start, surface, watching, max_steps, see_all);
-        let recorded = recorded.map_err(|_| "its tangents fail")?;
-        Ok(FineRun { recorded })
+/// Records anew from where the run is, so finely that its tangents tell an exponent that vanishes.
+fn with_tangents(run: &SweepRun, max_steps: usize) -> Result<Settled, Undecided> {
+    let tangents_fail = "its tangents fail";
+    let all = run.recorder.returns.len();
+    let watching = Watching {
+        returns: (all / 4).clamp(*FOR_EXPONENTS.start(), *FOR_EXPONENTS.end()),
+        ..run.watching
+    };
+    let see_all = &mut |_: usize, _: Option<&_>| Control::Continue;
+    let (field, surface) = (&*run.field, &run.surface);
+    let recorded = record_finely(field, run.last(), surface, &watching, max_steps, see_all)
+        .map_err(|_| tangents_fail)?;
+    if let Ended::Steady { equilibrium, .. } = &recorded.ended {
+        return Ok(steady(run, equilibrium));
     }
+    let found = spectrum(field, &recorded).map_err(|_| tangents_fail)?;
+    let known = Some(found.known());
+    let made = aperiodic(surface, &recorded.returns, recorded.accuracy, known);
+    if !matches!(made.regime, Regime::Torus | Regime::Chaotic) {
+        return Err(made.why.unwrap_or("its returns do not tell"));
+    }
+    let mut told = told(run, made.regime);
+    if let Some(range) = &mut told.row.range {
+        let waypoints = recorded.waypoints.iter();
+        waypoints.for_each(|point| see(range, point.state[run.variable]));
+    }
+    told.row.returns += recorded.returns.len();
+    told.attractor = recorded.returns.last().map(|at| at.state.clone());
+    told.row.lyapunov_max = found.across_flow();
+    Ok(told)
+}
 
-    /// Where it has come to rest, if it has.
-    pub fn rests_at(&self) -> Option<&Vector> {
-        match &self.recorded.ended {
-            Ended::Steady { equilibrium, .. } => Some(equilibrium),
-            _ => None,
+/// Whether Newton's method leads from a return of the run to a stable steady state.
+fn may_come_to_rest(run: &SweepRun) -> bool {
+    /// Returns that are tried, steps of Newton's method, and one that is the last, in units of 1 + |y|.
+    const TRIED: usize = 16;
+    const STEPS: usize = 40;
+    const LAST: f64 = 1e-9;
+    let rest = |at: &Return| {
+        let mut y = at.state.clone();
+        for _ in 0..STEPS {
+            let step = run.field.newton_step(y.as_slice())?;
+            y -= &step;
+            if step.amax() < LAST * (1.0 + y.amax()) {
+                return Some(y);
+            }
         }
-    }
-
-    pub fn last(&self) -> Option<&Return> {
-        self.recorded.returns.last()
-    }
-
-    /// A torus or chaos with the largest exponent across the flow, or why neither can be said.
-    pub fn regime(
-        &self,
-        surface: &Surface,
-        field: &AnyField<'_>,
-    ) -> std::result::Result<(Regime, Option<Uncertain>), &'static str> {
-        let recorded = &self.recorded;
-        let found = spectrum(field, recorded).map_err(|_| "its tangents fail")?;
-        let known = Some(found.known());
-        let made = aperiodic(surface, &recorded.returns, recorded.accuracy, known);
-        match made.regime {
-            Regime::Torus | Regime::Chaotic => Ok((made.regime, found.across_flow())),
-            _ => Err(made.why.unwrap_or("its returns do not tell")),
-        }
-    }
+        None
+    };
+    let returns = run.returns();
+    let every = (returns.len() / TRIED).max(1);
+    let mut rests = returns.iter().step_by(every).filter_map(rest);
+    rests.any(|y| growth(&run.field, y.as_slice()) < 0.0)
 }
 
-fn told(run: &SweepRun, regime: Regime, stress: (f64, f64)) -> Classified {
+/// A row of which the regime is known, with the range of the last stage.
+fn told(run: &SweepRun, regime: Regime) -> Settled {
     let mut told = begun(run, regime);
-    told.row.range = Some(stress);
+    told.row.range = Some(run.reach[run.variable]);
     told
 }

@@ -4,14 +4,14 @@
 //! one return each: they fill all lanes, and take a fraction of the time of tangents. What the differences err by follows
 //! from how much P bends within them.
 
-use super::flows::Flows;
+use super::flows::{Flows, Leg};
 use super::watch::SweepRun;
 use crate::error::Error;
-use crate::field::state;
-use crate::integrate::{BatchRun, Control, Step, StepSeries};
+use crate::integrate::{AnyStep, Control, StepSeries};
 use crate::section::{ALIGNMENT, GrowthSegment, LyapunovSpectrum, Return, summary};
 use crate::series::Zeros;
 use nalgebra::{Matrix2, Vector2};
+use std::rc::Rc;
 
 /// Part of the tolerance's cube root that starts are displaced by, in ln psi: rounding and bending then matter alike.
 const DISPLACED: f64 = 0.1;
@@ -86,9 +86,10 @@ fn beside(
             let mut start = pair[0].state.clone();
             start[1] += first * displaced;
             start[2] += second * displaced;
-            ways.push(BatchRun {
-                loading: run.point.loading,
-                start: state(run.surface.nearest(&start).as_slice()),
+            ways.push(Leg {
+                field: Rc::clone(&run.field),
+                lane: run.lane,
+                start: run.surface.nearest(&start),
                 t: (0.0, longest),
             });
         }
@@ -100,9 +101,9 @@ fn beside(
     let mut ends: Vec<Option<Vector2<f64>>> = vec![None; ways.len()];
     let section = run.surface.section();
     let mut found = Vec::new();
-    let mut observer = |k: usize, step: &Step<'_, 3>| {
+    let mut observer = |k: usize, step: &AnyStep<'_>| {
         let surface = &run.surface;
-        if !surface.may_be_passed(step.y0.as_slice(), signs[k].sign, step.reach) {
+        if !surface.may_be_passed(step.y0, signs[k].sign, step.reach) {
             return Ok(Control::Continue);
         }
         let series: &dyn StepSeries = step.series().ok_or(Error::NotAnalytic)?;

@@ -1,58 +1,79 @@
-//! How the runs of a sweep are advanced: side by side in the lanes of the processor, or one after the other.
+//! How the runs of a sweep are advanced: those of two equal interfaces side by side in the lanes of the processor, others one after the other.
 
+use super::SweepSettings;
 use crate::error::Result;
-use crate::field::State;
+use crate::field::{Vector, state, vector};
 use crate::friction::AnyLaw;
 use crate::integrate::{
-    Batch, BatchObserver, BatchRun, Integrator, Observer, Step, Taylor, Tolerances,
+    AnyField, AnyIntegrator, AnyStep, Batch, BatchRun, Choice, Control, Step, Tolerances,
 };
-use crate::model::two_interfaces;
+use crate::model::Loading;
+use std::rc::Rc;
 
-/// What advances runs with one law.
+/// What advances runs.
 pub(super) struct Flows {
-    law: AnyLaw,
-    way: Backend,
+    /// Lanes have one law.
+    lanes: Option<(AnyLaw, Batch)>,
+    one: AnyIntegrator,
 }
 
-enum Backend {
-    Lanes(Batch),
-    OneByOne(Taylor),
+/// From a state at one time to another time.
+pub(super) struct Leg {
+    pub field: Rc<AnyField<'static>>,
+    /// The law and loading of two equal interfaces.
+    pub lane: Option<(AnyLaw, Loading)>,
+    pub start: Vector,
+    pub t: (f64, f64),
 }
+
+/// Sees the steps of the leg of a number.
+pub(super) type LegObserver<'a> = &'a mut dyn FnMut(usize, &AnyStep<'_>) -> Result<Control>;
 
 impl Flows {
-    pub fn lanes(law: AnyLaw, rtol: f64, max_steps: usize) -> Result<Self> {
-        let batch = Batch::new(law, Tolerances::equal(rtol)?, max_steps)?;
-        let way = Backend::Lanes(batch);
-        Ok(Flows { law, way })
+    pub fn new(settings: &SweepSettings) -> Result<Self> {
+        let tolerances = Tolerances::equal(settings.rtol)?;
+        let batch = |law| Batch::new(law, tolerances, settings.max_steps);
+        let lanes = settings.grid.law();
+        Ok(Flows {
+            lanes: lanes.map(|law| Ok((law, batch(law)?))).transpose()?,
+            one: AnyIntegrator::new(Choice::Taylor, tolerances, settings.max_steps)?,
+        })
     }
 
-    pub fn one_by_one(law: AnyLaw, rtol: f64, max_steps: usize) -> Result<Self> {
-        let taylor = Taylor::new(Tolerances::equal(rtol)?, max_steps)?;
-        let way = Backend::OneByOne(taylor);
-        Ok(Flows { law, way })
+    /// Takes runs one after the other from now on.
+    pub fn without_lanes(&mut self) {
+        self.lanes = None;
     }
 
-    /// Goes on with another law; lanes stay with theirs.
-    pub fn set_law(&mut self, law: AnyLaw) {
-        self.law = law;
+    /// What advances a single run.
+    pub fn one(&mut self) -> &mut AnyIntegrator {
+        &mut self.one
     }
 
-    /// As [`Batch::flow`].
-    pub fn flow(
-        &mut self,
-        runs: &[BatchRun],
-        observer: BatchObserver<'_>,
-    ) -> Vec<Result<State<3>>> {
-        let taylor = match &mut self.way {
-            Backend::Lanes(batch) => return batch.flow(runs, Some(observer)),
-            Backend::OneByOne(taylor) => taylor,
+    /// Where the legs end, in their order; as [`Batch::flow`].
+    pub fn flow(&mut self, legs: &[Leg], observer: LegObserver<'_>) -> Vec<Result<Vector>> {
+        let law = self.lanes.as_ref().map(|(law, _)| *law);
+        let in_lanes = |leg: &Leg| leg.lane.filter(|(of_leg, _)| Some(*of_leg) == law);
+        let runs: Option<Vec<BatchRun>> = legs
+            .iter()
+            .map(|leg| {
+                in_lanes(leg).map(|(_, loading)| BatchRun {
+                    loading,
+                    start: state(leg.start.as_slice()),
+                    t: leg.t,
+                })
+            })
+            .collect();
+        if let (Some(runs), Some((_, batch))) = (runs, &mut self.lanes) {
+            let mut see =
+                |k: usize, step: &Step<'_, 3>| AnyStep::of(step, 3, |step| observer(k, step));
+            let ends = batch.flow(&runs, Some(&mut see));
+            return ends.into_iter().map(|end| Ok(vector(&end?))).collect();
+        }
+        let one = |(k, leg): (usize, &Leg)| {
+            let mut see = |step: &AnyStep<'_>| observer(k, step);
+            self.one.flow(&leg.field, leg.t, &leg.start, Some(&mut see))
         };
-        let mut one = |(k, run): (usize, &BatchRun)| {
-            let field = two_interfaces(self.law, run.loading);
-            let mut of_run = |step: &Step<'_, 3>| observer(k, step);
-            let see: Observer<'_, 3> = &mut of_run;
-            taylor.flow(&*field, run.t, &run.start, Some(see))
-        };
-        runs.iter().enumerate().map(&mut one).collect()
+        legs.iter().enumerate().map(one).collect()
     }
 }

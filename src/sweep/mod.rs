@@ -8,13 +8,11 @@
 //! periodic point of the return map that attracts; or through enough returns to tell a torus or chaos.
 
 mod aperiodic;
-mod capture;
-mod classify;
+mod attraction;
 mod closing;
 mod finite_difference_exponent;
 mod flows;
-mod general;
-mod interfaces;
+mod judge;
 mod orbit;
 mod points;
 mod range;
@@ -22,10 +20,10 @@ mod run;
 mod slow_convergence;
 mod start;
 mod sweeper;
+mod transient;
 mod watch;
 
-pub use general::{Enclosure, SectionPlace, SystemPoint, SystemPoints};
-pub use points::{LawPoints, RandomStart};
+pub use points::{Enclosure, RandomStart, SectionPlace, SystemPoint, SystemPoints};
 
 pub use range::Range;
 #[doc(hidden)]
@@ -34,7 +32,7 @@ pub use range::fields;
 pub use run::threads_checked;
 pub use run::{UnitShare, run};
 #[doc(hidden)]
-pub use start::start_of_interfaces;
+pub use start::{equal_interfaces, start_of_interfaces};
 pub use sweeper::Sweeper;
 
 use crate::equilibrium::Symmetry;
@@ -57,6 +55,8 @@ const MOST_RETURNS: usize = 1_000_000;
 pub enum Grid {
     /// V_H, fastest, and K, of two equal interfaces.
     Plane {
+        /// How they resist.
+        law: AnyLaw,
         /// V_H in V*.
         driving: Range,
         /// K in a sigma / L.
@@ -64,19 +64,14 @@ pub enum Grid {
     },
     /// Starts at the stress tau_ss(V_H/2) of one slab: psi_1, fastest, and psi_2.
     Basin {
+        /// How it resists.
+        law: AnyLaw,
         /// V_H and K.
         loading: Loading,
         /// psi_1
         state_1: Range,
         /// psi_2
         state_2: Range,
-    },
-    /// One or two parameters, the first fastest, of two equal interfaces with a law that is built in.
-    Laws {
-        /// Their values.
-        axes: Vec<Range>,
-        /// The law and the loading at these.
-        at: Arc<dyn LawPoints>,
     },
     /// One or two parameters, the first fastest, of any system.
     Systems {
@@ -91,11 +86,21 @@ impl Grid {
     /// The inner range, which varies fastest, and the outer one, where there are two.
     pub fn ranges(&self) -> Vec<&Range> {
         match self {
-            Grid::Plane { driving, stiffness } => vec![driving, stiffness],
+            Grid::Plane {
+                driving, stiffness, ..
+            } => vec![driving, stiffness],
             Grid::Basin {
                 state_1, state_2, ..
             } => vec![state_1, state_2],
-            Grid::Laws { axes, .. } | Grid::Systems { axes, .. } => axes.iter().collect(),
+            Grid::Systems { axes, .. } => axes.iter().collect(),
+        }
+    }
+
+    /// The law of all points, where they are of two equal interfaces.
+    fn law(&self) -> Option<AnyLaw> {
+        match self {
+            Grid::Plane { law, .. } | Grid::Basin { law, .. } => Some(*law),
+            Grid::Systems { .. } => None,
         }
     }
 
@@ -117,7 +122,6 @@ impl Grid {
         match self {
             Grid::Plane { .. } => values,
             Grid::Basin { loading, .. } => vec![loading.driving, loading.stiffness],
-            Grid::Laws { at, .. } => at.parameters(&values),
             Grid::Systems { at, .. } => at.parameters(&values),
         }
     }
@@ -127,8 +131,6 @@ impl Grid {
 /// with the s-th of S starts.
 #[derive(Debug, Clone)]
 pub struct SweepSettings {
-    /// The law of the interfaces of a plane or a basin.
-    pub law: AnyLaw,
     /// The points.
     pub grid: Grid,
     /// Starts at each: the first beside the symmetric steady state, the second with equal interfaces, which it leaves only where
@@ -191,7 +193,7 @@ impl SweepSettings {
         let names = match self.grid {
             Grid::Plane { .. } => ["driving", "stiffness"],
             Grid::Basin { .. } => ["state-1", "state-2"],
-            Grid::Laws { .. } | Grid::Systems { .. } => ["grid"; 2],
+            Grid::Systems { .. } => ["grid"; 2],
         };
         let ranges = self.grid.ranges();
         if ranges.len() > names.len() {
@@ -204,7 +206,7 @@ impl SweepSettings {
         for (range, name) in ranges.into_iter().zip(names) {
             match self.grid {
                 Grid::Plane { .. } | Grid::Basin { .. } => range.checked_positive(name)?,
-                Grid::Laws { .. } | Grid::Systems { .. } => range.checked(name)?,
+                Grid::Systems { .. } => range.checked(name)?,
             }
         }
         if let Grid::Basin { loading, .. } = &self.grid {

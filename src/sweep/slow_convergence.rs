@@ -10,7 +10,7 @@
 //! nearer to the same orbit, again as fast as its multipliers say.
 
 use super::closing::apart;
-use crate::field::{State, Vector, state};
+use crate::field::Vector;
 use crate::integrate::{AnyField, AnyIntegrator};
 use crate::section::{
     LONGEST_PERIOD, Periodic, PeriodicSearch, Return, SeriesVariables, Surface, growth,
@@ -35,24 +35,20 @@ const LEFT: f64 = 0.25;
 #[derive(Debug)]
 pub(super) struct Leap {
     /// From where.
-    pub from: State<3>,
+    pub from: Vector,
     /// The periodic point that it is to lead to.
     pub to: Periodic,
 }
 
 impl Leap {
     /// Where one lands, from a state most of the way to a point.
-    pub fn landing(from: &State<3>, to: &Vector, surface: &Surface) -> State<3> {
-        let lands = |i: usize| match i {
+    pub fn landing(from: &Vector, to: &Vector, surface: &Surface) -> Vector {
+        let lands = |i: usize, _| match i {
             0 => to[0] + LEFT * (from[0] - to[0]),
             // In psi, of which these are logarithms.
             _ => to[i] + (LEFT * (from[i] - to[i]).exp_m1()).ln_1p(),
         };
-        state(
-            surface
-                .nearest(&Vector::from_fn(3, |i, _| lands(i)))
-                .as_slice(),
-        )
+        surface.nearest(&Vector::from_fn(to.len(), lands))
     }
 
     /// Whether the returns since come to the point as they should.

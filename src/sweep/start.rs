@@ -1,12 +1,14 @@
 //! Where the runs of a sweep start.
 
-use super::points::RandomStart;
+use super::points::{RandomStart, SectionPlace, SystemPoint};
 use super::{Grid, SweepRow, SweepSettings};
 use crate::error::Result;
-use crate::field::State;
+use crate::field::Vector;
 use crate::friction::{AnyLaw, Formulas, beside};
-use crate::model::Loading;
-use crate::section::{Regime, half_driving_stress};
+use crate::integrate::{AnyField, MotionUnits};
+use crate::model::{Loading, two_interfaces};
+use crate::number::polynomial::Crossing;
+use crate::section::{Regime, Surface, half_driving_stress, usual_patience};
 
 /// ln psi_2 - ln psi_1 of the start beside the symmetric steady state.
 const BESIDE: f64 = 0.01;
@@ -18,65 +20,68 @@ const FAR: (f64, f64) = (1.0, -4.0);
 const RANDOM_STRESS: (f64, f64) = (-1.0, 1.5);
 const RANDOM_LOG_STATE: (f64, f64) = (-5.0, 1.0);
 
-/// A run of a sweep: of which law, where, and from which state.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct SweepStart {
-    pub number: usize,
-    /// What its row tells of it.
-    pub parameters: Vec<f64>,
-    pub law: AnyLaw,
-    pub loading: Loading,
-    /// (tau, ln psi_1, ln psi_2)
-    pub start: State<3>,
-}
+/// Part of the usual patience: some 20 periods of stick-slip.
+const PATIENCE: f64 = 0.1;
 
 /// The point of that number.
 ///
 /// # Errors
-/// Those of the law at the point.
-pub(super) fn point(settings: &SweepSettings, number: usize) -> Result<SweepStart> {
+/// Those of the system at the point.
+pub(super) fn point(settings: &SweepSettings, number: usize) -> Result<SystemPoint> {
     let place @ [i, j] = settings.place(number);
-    let stress = |law: &AnyLaw, driving: f64| half_driving_stress(law, driving, 2);
-    let ((law, loading), basin) = match &settings.grid {
-        Grid::Plane { driving, stiffness } => {
+    let kind = number % settings.starts;
+    let random = RandomStart::new(settings.seed, number);
+    match &settings.grid {
+        Grid::Plane {
+            law,
+            driving,
+            stiffness,
+        } => {
             let loading = Loading {
                 driving: driving.value(i),
                 stiffness: stiffness.value(j),
             };
-            ((settings.law, loading), None)
+            Ok(equal_interfaces(*law, loading, kind, random))
         }
         Grid::Basin {
+            law,
             loading,
             state_1,
             state_2,
         } => {
-            let states = (state_1.value(i).ln(), state_2.value(j).ln());
-            ((settings.law, *loading), Some(states))
+            let mut point = equal_interfaces(*law, *loading, kind, random);
+            point.start[1] = state_1.value(i).ln();
+            point.start[2] = state_2.value(j).ln();
+            Ok(point)
         }
-        Grid::Laws { at, .. } => (at.at(&settings.grid.values(place))?, None),
-        Grid::Systems { .. } => unreachable!("other systems have starts of their own"),
+        Grid::Systems { at, .. } => at.at(&settings.grid.values(place), kind, random),
+    }
+}
+
+/// Two equal interfaces, with the start of this kind: the first beside the symmetric steady state.
+#[doc(hidden)]
+pub fn equal_interfaces(
+    law: AnyLaw,
+    loading: Loading,
+    kind: usize,
+    random: RandomStart,
+) -> SystemPoint {
+    let stress = half_driving_stress(&law, loading.driving, 2);
+    let w = law.steady_state(0.5 * loading.driving).ln();
+    let start = match kind {
+        0 => vec![stress, w, beside(&law, w, BESIDE)],
+        kind => start_of_interfaces(kind, random, stress, &[w, w]),
     };
-    let tau = stress(&law, loading.driving);
-    let start = match basin {
-        Some((first, second)) => State::<3>::new(tau, first, second),
-        None => {
-            let w = law.steady_state(0.5 * loading.driving).ln();
-            match number % settings.starts {
-                0 => State::<3>::new(tau, w, beside(&law, w, BESIDE)),
-                s => {
-                    let random = RandomStart::new(settings.seed, number);
-                    State::<3>::from_column_slice(&start_of_interfaces(s, random, tau, &[w, w]))
-                }
-            }
-        }
-    };
-    Ok(SweepStart {
-        number,
-        parameters: settings.grid.parameters(place),
-        law,
-        loading,
-        start,
-    })
+    let patience = PATIENCE * usual_patience(loading.driving, loading.stiffness);
+    SystemPoint {
+        units: MotionUnits::given(3),
+        field: AnyField::new::<3>(two_interfaces(law, loading)),
+        start: Vector::from_vec(start),
+        section: SectionPlace::Known(Surface::stress(3, stress, Crossing::Downwards), patience),
+        equal_parts: true,
+        lane: Some((law, loading)),
+        enclosed: None,
+    }
 }
 
 /// The row of a point that there is not.

@@ -1,116 +1,196 @@
-//! A run on its way: its returns, and whether they tell yet what it settles on.
+//! A run on its way: its returns, how far it swings, and whether it is to be classified yet.
 
-use super::capture::Capture;
+use super::attraction::Attraction;
 use super::closing::{FEWEST_TO_CLOSE, closing};
+use super::judge::FIRST_STAGE;
+use super::points::{Enclosure, SectionPlace, SystemPoint};
 use super::slow_convergence::Leap;
-use super::start::SweepStart;
-use crate::error::Result;
-use crate::field::{State, state, vector};
-use crate::integrate::{AnyField, AnyStep, Control, Step, StepSeries};
-use crate::model::two_interfaces;
+use super::{SweepRow, SweepSettings};
+use crate::equilibrium::Enclosed;
+use crate::error::{Error, Result};
+use crate::field::Vector;
+use crate::friction::AnyLaw;
+use crate::integrate::{AnyField, AnyStep, Control, MotionUnits, StepSeries};
+use crate::model::Loading;
 use crate::number::bracketed_root;
 use crate::number::polynomial::{Crossing, evaluate};
 use crate::section::{
-    AT_START, Ended, Periodic, Recorder, Return, Surface, Watched, Watching, equilibrium_near,
-    half_driving_stress, usual_patience,
+    AT_START, Ended, Periodic, Recorder, Return, SeriesVariables, Surface, Watched, Watching,
+    equilibrium_near, growth,
 };
+use std::rc::Rc;
 
 /// Steps between two looks whether an equilibrium has caught the run.
-const BETWEEN_LOOKS: usize = 48;
-/// Part of the usual patience: some 20 periods of stick-slip.
-const PATIENCE: f64 = 0.1;
+pub(super) const BETWEEN_LOOKS: usize = 48;
+/// How much longer than usual a run may wait once for a return.
+const LONGER: f64 = 10.0;
 /// A run that swings by less is at rest.
 pub(super) const SWING: f64 = 1e-7;
-/// Interfaces of a run that is held in symmetry are no farther apart, in ln psi; it is let go by the second, and so often.
-const HELD: f64 = 1e-6;
+/// How close to an unstable equilibrium a run is held at it, and how close two equal parts are to each other when they move alike.
+const HELD: f64 = 1e-5;
+const ALIKE: f64 = 1e-6;
+/// By how much of its size a run is let go from an unstable state or orbit, and how often.
 const PUSH: f64 = 1e-3;
 const MOST_PUSHES: usize = 2;
-/// Runs that are judged before so many returns are not judged by the stress on the way: its turns take time.
-const STRESS_FROM: usize = 512;
+/// Of a run whose section is known, the range is not recorded before so many returns: the turns of a variable take time.
+const RANGE_FROM: usize = 512;
+/// A state beyond this, in its unit, goes to infinity.
+const INFINITE: f64 = 1e100;
+/// Windows, one after the other, in which a run that never turns grows each time by more than this factor, until it is seen to go on so.
+const GROWING_WINDOWS: usize = 4;
+const GROWTH: f64 = 1.5;
+/// Distances are measured by how far a system swings, but not by less than this.
+const LEAST_UNIT: f64 = 1e-2;
 
 /// A run of a sweep.
 pub(super) struct SweepRun {
-    pub point: SweepStart,
-    pub field: AnyField<'static>,
+    /// What is known of its point.
+    pub row: SweepRow,
+    pub units: MotionUnits,
+    /// Shared with what advances the run.
+    pub field: Rc<AnyField<'static>>,
+    /// The law and loading of two equal interfaces, whose runs may go side by side.
+    pub lane: Option<(AnyLaw, Loading)>,
+    pub equal_parts: bool,
+    pub place: SectionPlace,
     pub surface: Surface,
+    /// The variable that the section is in, or most in.
+    pub variable: usize,
     pub watching: Watching,
     pub recorder: Recorder,
-    capture: Capture,
     /// The time and the state reached.
     pub time: f64,
-    pub state: State<3>,
+    pub state: Vector,
     /// Returns before this one tell nothing any more.
-    pub fresh: usize,
-    /// The number of returns before which no candidate is looked for again, and at which the run is judged anyway.
+    fresh: usize,
+    /// The number of returns before which no candidate is looked for again, and at which the run is classified anyway.
     pub next_look: usize,
     pub next_stage: usize,
     /// A candidate for the number of returns per period.
     pub candidate: Option<usize>,
-    /// The least and the greatest stress since the last stage began.
-    pub stress: (f64, f64),
-    /// How often it was let go from an unstable orbit.
+    /// The least and the greatest value of every variable since the last stage began; of a run whose section is known, of that variable alone.
+    pub reach: Vec<(f64, f64)>,
+    /// What distances are measured in.
+    pub unit: f64,
+    /// How often it was let go.
     pub pushes: usize,
-    /// Whether it rests where it would not but for rounding.
-    pub held: bool,
+    /// Why nothing more is to be waited for.
+    pub hopeless: Option<String>,
     /// A leap that is yet to be confirmed.
     pub leap: Option<Leap>,
     /// Whether one was taken back: there is no other.
     taken_back: bool,
-    /// Whether the section was moved, and a return waited for as long as it is usual.
+    growing: Growing,
+    enclosed: Option<Enclosure>,
+    attraction: Attraction,
+    /// Whether the section was moved, and a return waited for longer than usual.
     moved: bool,
     waited: bool,
 }
 
+/// How long a run has grown without turning.
+#[derive(Debug, Default)]
+struct Growing {
+    /// The size of the state at the end of the last window.
+    size: f64,
+    /// In so many windows.
+    windows: usize,
+}
+
 impl SweepRun {
-    pub fn new(point: SweepStart, watching: Watching, stage: usize) -> Self {
-        let law = point.law;
-        let field = AnyField::new::<3>(two_interfaces(law, point.loading));
-        let tau = half_driving_stress(&law, point.loading.driving, 2);
+    /// From the start of a point; the row has what is known of it.
+    pub fn new(point: SystemPoint, row: SweepRow, settings: &SweepSettings) -> Self {
+        let dimension = point.field.dimension();
+        let (surface, patience) = match &point.section {
+            SectionPlace::Known(surface, patience) => (surface.clone(), *patience),
+            SectionPlace::Untimed(surface) => (surface.clone(), f64::INFINITY),
+            SectionPlace::Middle(state) => (across(*state, dimension, 0.0), f64::INFINITY),
+        };
+        let stage = FIRST_STAGE.min(settings.max_returns);
         let mut run = SweepRun {
-            surface: Surface::stress(field.dimension(), tau, Crossing::Downwards),
-            field,
+            row,
+            units: point.units,
+            field: Rc::new(point.field),
+            lane: point.lane,
+            equal_parts: point.equal_parts,
+            variable: surface.normal.iamax(),
+            place: point.section,
+            surface,
             watching: Watching {
-                patience: PATIENCE * usual_patience(point.loading.driving, point.loading.stiffness),
-                ..watching
+                skip: 0,
+                returns: settings.max_returns + 1,
+                patience,
+                accuracy: settings.rtol,
+                max_step: f64::INFINITY,
+                waypoints: false,
             },
             recorder: Recorder::new(),
-            capture: Capture::default(),
             time: 0.0,
             state: point.start,
             fresh: 0,
             next_look: FEWEST_TO_CLOSE,
             next_stage: stage,
             candidate: None,
-            stress: (f64::INFINITY, f64::NEG_INFINITY),
+            reach: vec![(f64::INFINITY, f64::NEG_INFINITY); dimension],
+            unit: 1.0,
             pushes: 0,
-            held: false,
+            hopeless: None,
             leap: None,
             taken_back: false,
+            growing: Growing::default(),
+            enclosed: point.enclosed,
+            attraction: Attraction::default(),
             moved: false,
             waited: false,
-            point,
         };
         run.recorder.returns.reserve(2 * stage);
-        let near = equilibrium_near(&run.field, run.state.as_slice(), AT_START);
-        if let Some((equilibrium, stable)) = near {
-            run.recorder.ended = Some(Ended::Steady {
-                time: 0.0,
-                equilibrium,
-                stable,
-            });
+        // A start at an equilibrium is left by rounding alone: a stable one is where the run stays.
+        match equilibrium_near(&run.field, run.state.as_slice(), AT_START) {
+            Some((equilibrium, true)) => run.recorder.ended = Some(caught(0.0, equilibrium)),
+            Some(_) => run.push(),
+            None => (),
         }
         run
     }
 
-    /// A time that the run ends before.
-    pub fn end(&self) -> f64 {
-        let all = (self.watching.skip + self.watching.returns + 1) as f64;
-        (2.0 * all * self.watching.patience).min(f64::MAX)
+    /// An error in words, in the system's own units.
+    pub fn in_words(&self, error: Error) -> String {
+        self.units.outward_error(error, self.variable).to_string()
     }
 
-    /// Sees a step; the run stops where it is to be judged.
-    pub fn step(&mut self, step: &Step<'_, 3>) -> Result<Control> {
-        (self.time, self.state) = (step.t1, *step.y1);
+    /// Whether the section and the time to wait for a return to it were known at the beginning.
+    pub fn is_timed(&self) -> bool {
+        matches!(self.place, SectionPlace::Known(..))
+    }
+
+    /// The returns that tell.
+    pub fn returns(&self) -> &[Return] {
+        &self.recorder.returns[self.fresh.min(self.recorder.returns.len())..]
+    }
+
+    /// Where the run stands, or was last on the section.
+    pub fn last(&self) -> &Vector {
+        self.returns().last().map_or(&self.state, |at| &at.state)
+    }
+
+    /// The time now, and one that the run is classified before.
+    pub fn span(&self) -> (f64, f64) {
+        let all = (self.watching.skip + self.watching.returns + 1) as f64;
+        let end = self.time + 2.0 * all * self.watching.patience;
+        (self.time, end.min(f64::MAX))
+    }
+
+    /// Sees that a leg of the run ends at a time: before it the run had to return.
+    pub fn is_late(&mut self, end: f64) {
+        if self.time >= end && self.recorder.ended.is_none() && self.hopeless.is_none() {
+            let error = self.recorder.no_return(&self.surface, end);
+            self.recorder.ended = Some(Ended::Failed(error));
+        }
+    }
+
+    /// Sees a step; the run stops where it is to be classified.
+    pub fn step(&mut self, step: &AnyStep<'_>) -> Result<Control> {
+        self.come_to(step);
         let passed = self.recorder.passed;
         let watched = Watched {
             field: &self.field,
@@ -118,16 +198,19 @@ impl SweepRun {
             watching: &self.watching,
         };
         let go_on = &mut |_: usize, _: Option<&Return>| Control::Continue;
-        let recorder = &mut self.recorder;
-        let told = AnyStep::of(step, 3, |step| recorder.step(&watched, step, go_on))?;
-        self.see_stress(step);
-        if told == Control::Stop {
-            return Ok(told);
+        let told = self.recorder.step(&watched, step, go_on)?;
+        if self.is_timed() {
+            self.see_range(step);
+        } else {
+            see_all(&mut self.reach, step, self.variable);
+        }
+        if told == Control::Stop || self.goes_to_infinity(step) {
+            return Ok(Control::Stop);
         }
         if self.recorder.passed > passed {
             let n = self.recorder.returns.len();
             self.candidate = (n >= self.next_look)
-                .then(|| closing(self.returns(), 1.0))
+                .then(|| closing(self.returns(), self.unit))
                 .flatten();
             if self.candidate.is_some() || n >= self.next_stage {
                 return Ok(Control::Stop);
@@ -136,74 +219,162 @@ impl SweepRun {
         if !self.recorder.steps.is_multiple_of(BETWEEN_LOOKS) {
             return Ok(Control::Continue);
         }
-        if let Some(equilibrium) = self.capture.of(&self.field, step.y1) {
-            self.recorder.ended = Some(Ended::Steady {
-                time: step.t1,
-                equilibrium: vector(&equilibrium),
-                stable: true,
-            });
-            return Ok(Control::Stop);
-        }
-        self.held = self.is_held(step.y1) && self.capture.rests_unstably(step.y1);
-        Ok(if self.held {
-            Control::Stop
-        } else {
-            Control::Continue
+        Ok(match self.is_caught(step) || self.is_held(step.y1) {
+            true => Control::Stop,
+            false => Control::Continue,
         })
     }
 
-    /// Whether the interfaces are alike, and the run may be let go.
-    fn is_held(&self, y: &State<3>) -> bool {
-        (y[1] - y[2]).abs() < HELD && self.pushes < MOST_PUSHES
+    /// Notes where a step ends.
+    pub fn come_to(&mut self, step: &AnyStep<'_>) {
+        self.time = step.t1;
+        self.state.copy_from_slice(step.y1);
     }
 
-    /// Moves the section to where a run swings that does not cross it, as just after a Hopf point of the asymmetric steady state;
-    /// once.
-    pub fn surface_moves_between(&mut self, lowest: f64, highest: f64) -> bool {
-        if self.moved || highest - lowest <= SWING {
+    /// Whether a stable equilibrium has caught the run at the end of a step; then it ends there.
+    pub fn is_caught(&mut self, step: &AnyStep<'_>) -> bool {
+        let equations = match &self.enclosed {
+            Some(Enclosure(equations)) => Some(&**equations as &dyn Enclosed),
+            None => None,
+        };
+        let at = self.attraction.of(&self.field, equations, step.y1);
+        if let Some(equilibrium) = at {
+            self.recorder.ended = Some(caught(step.t1, equilibrium));
+        }
+        self.recorder.ended.is_some()
+    }
+
+    /// Whether equal parts move alike, and rounding holds them at an unstable equilibrium.
+    fn is_held(&self, y: &[f64]) -> bool {
+        self.equal_parts && self.may_be_let_go(y) && self.attraction.rests_unstably(y)
+    }
+
+    /// Whether a run that a state or orbit holds may be let go: of equal parts those that move alike, any other.
+    fn may_be_let_go(&self, y: &[f64]) -> bool {
+        self.pushes < MOST_PUSHES && (!self.equal_parts || are_alike(y, ALIKE))
+    }
+
+    /// Lets a run go from an unstable state or orbit that nothing but rounding or its start holds it on; whether it may be.
+    pub fn let_go(&mut self, from: &Vector) -> bool {
+        let may = self.may_be_let_go(from.as_slice());
+        if may {
+            self.state.copy_from(from);
+            self.push();
+        }
+        may
+    }
+
+    /// Lets it go from where it is. Of equal parts that move alike one side is the mirror image of the other: either will do.
+    fn push(&mut self) {
+        self.pushes += 1;
+        let mut to = self.state.clone();
+        let last = to.len() - 1;
+        if self.equal_parts && are_alike(to.as_slice(), ALIKE) {
+            to[last] += PUSH;
+        } else {
+            to = pushed(&to, PUSH);
+        }
+        self.go_on_from(to);
+    }
+
+    /// Lets a run go from an unstable equilibrium that it is held at, by a symmetry or by its start; whether it was.
+    pub fn leaves_rest(&mut self) -> bool {
+        if !self.may_be_let_go(self.state.as_slice()) {
             return false;
         }
-        self.moved = true;
-        self.surface.offset = 0.5 * (lowest + highest);
-        self.fresh = self.recorder.returns.len();
-        self.recorder.resume(self.time);
+        let near = equilibrium_near(&self.field, self.state.as_slice(), HELD);
+        let held = near.is_some_and(|(at, _)| growth(&self.field, at.as_slice()) > 0.0);
+        if held {
+            self.push();
+        }
+        held
+    }
+
+    /// A new stage begins: of a run that shows its own size, distances are measured by how far it has swung in the last one.
+    pub fn begin_stage(&mut self) {
+        if !self.is_timed() {
+            let swings = self.reach.iter().map(|(low, high)| high - low);
+            let swing = swings.fold(0.0, f64::max);
+            self.unit = swing.clamp(LEAST_UNIT, f64::MAX);
+        }
+        self.reach.fill((f64::INFINITY, f64::NEG_INFINITY));
+    }
+
+    /// Sees the end of a window of the transient, in which the run has turned round so often: one that never turns, and grows by its own
+    /// size from one window to the next, is not waited for.
+    pub fn end_window(&mut self, turns: usize) {
+        let size = self.state.amax();
+        let grows = turns == 0 && size > GROWTH * self.growing.size.max(1.0);
+        let windows = if grows { self.growing.windows + 1 } else { 0 };
+        self.growing = Growing { size, windows };
+        if windows >= GROWING_WINDOWS && self.hopeless.is_none() {
+            self.hopeless = Some(format!(
+                "it goes on growing without turning: a state has come to {:.1e} at t = {:.6e}",
+                self.units.outward(&self.state).amax(),
+                self.time * self.units.time
+            ));
+        }
+    }
+
+    /// Whether a step leads to infinity; then the reason is put down.
+    pub fn goes_to_infinity(&mut self, step: &AnyStep<'_>) -> bool {
+        let Some(i) = step.y1.iter().position(|y| y.abs() > INFINITE) else {
+            return false;
+        };
+        self.hopeless = Some(format!(
+            "it goes to infinity: a state is at {:.1e} at t = {:.6e}",
+            step.y1[i] * self.units.sizes[i],
+            step.t1 * self.units.time
+        ));
         true
     }
 
-    /// Waits as long as it is usual, once: close to a bifurcation a run may slow_convergence.
+    /// Puts the section at another value of its variable.
+    pub fn put_section(&mut self, value: f64) {
+        self.surface.offset = value;
+        self.fresh = self.recorder.returns.len();
+        self.recorder.resume(self.time);
+    }
+
+    /// Moves the section, unless it was asked for by its value, to where a run swings that does not cross it, as just after a Hopf point; once.
+    pub fn section_moves_between(&mut self, lowest: f64, highest: f64) -> bool {
+        let asked = matches!(self.place, SectionPlace::Untimed(_));
+        if asked || self.moved || highest - lowest <= SWING * self.unit {
+            return false;
+        }
+        self.moved = true;
+        self.put_section(0.5 * (lowest + highest));
+        true
+    }
+
+    /// Waits longer than usual, once: close to a bifurcation a run may converge slowly.
     pub fn waits_longer(&mut self) -> bool {
         let longer = !self.waited;
         if longer {
             self.waited = true;
-            self.watching.patience /= PATIENCE;
+            self.watching.patience *= LONGER;
             self.recorder.resume(self.time);
         }
         longer
     }
 
-    /// Lets a run go from an unstable state or orbit of equal interfaces that nothing but rounding holds it on. What holds for one
-    /// side holds for its mirror image: either will do. Whether there was anything to let go.
-    pub fn let_go(&mut self, y: State<3>) -> bool {
-        let held = self.is_held(&y);
-        if held {
-            self.pushes += 1;
-            self.go_on_from(y + State::<3>::new(0.0, 0.0, PUSH));
-        }
-        held
-    }
-
     /// Leaps most of the way to this point, unless a leap was taken back before; whether it did.
     pub fn leaps(&mut self, to: Periodic) -> bool {
-        let Some(last) = self.returns().last().filter(|_| !self.taken_back) else {
+        let last = self.returns().last().filter(|_| !self.taken_back);
+        let Some(last) = last.map(|at| at.state.clone()) else {
             return false;
         };
-        let last = state(last.state.as_slice());
         let landing = Leap::landing(&last, &to.point, &self.surface);
         // Back is to where the first of several began.
         let from = self.leap.take().map_or(last, |before| before.from);
         self.leap = Some(Leap { from, to });
         self.go_on_from(landing);
         true
+    }
+
+    /// Whether leaps are known to work: along logarithms of states, which come to their end exponentially.
+    pub fn may_leap(&self) -> bool {
+        self.surface.chart == SeriesVariables::LogStates
     }
 
     /// Takes back what has leapt; whether there was anything.
@@ -216,32 +387,61 @@ impl SweepRun {
         true
     }
 
-    fn go_on_from(&mut self, y: State<3>) {
+    fn go_on_from(&mut self, y: Vector) {
         self.state = y;
         self.fresh = self.recorder.returns.len();
         self.recorder.resume(self.time);
     }
 
-    fn see_stress(&mut self, step: &Step<'_, 3>) {
-        if self.next_stage < STRESS_FROM {
+    /// Widens the range of the section's variable by a step, whose turns are computed where they may lie outside.
+    fn see_range(&mut self, step: &AnyStep<'_>) {
+        if self.next_stage < RANGE_FROM {
             return;
         }
-        see(&mut self.stress, step.y1[0]);
-        let (low, high) = self.stress;
-        if (low..=high).contains(&(step.y0[0] - step.reach))
-            && (low..=high).contains(&(step.y0[0] + step.reach))
-        {
+        let range = &mut self.reach[self.variable];
+        see(range, step.y1[self.variable]);
+        let (low, high) = *range;
+        let y = step.y0[self.variable];
+        let is_within = |y: f64| (low..=high).contains(&y);
+        if self.variable == 0 && is_within(y - step.reach) && is_within(y + step.reach) {
             return;
         }
-        if let Some(turn) = step.series().and_then(|series| turn(series, 0)) {
-            see(&mut self.stress, turn);
+        if let Some(turn) = step.series().and_then(|series| turn(series, self.variable)) {
+            see(range, turn);
         }
     }
+}
 
-    /// The returns that tell.
-    pub fn returns(&self) -> &[Return] {
-        &self.recorder.returns[self.fresh.min(self.recorder.returns.len())..]
+/// Whether the last two variables, of equal parts, differ by less than this.
+pub(super) fn are_alike(y: &[f64], by_less_than: f64) -> bool {
+    let last = y.len() - 1;
+    (y[last - 1] - y[last]).abs() < by_less_than
+}
+
+/// That a run ends at a stable equilibrium.
+pub(super) fn caught(time: f64, equilibrium: Vector) -> Ended {
+    Ended::Steady {
+        time,
+        equilibrium,
+        stable: true,
     }
+}
+
+/// The section in which a variable has a value, falling.
+pub(super) fn across(variable: usize, dimension: usize, value: f64) -> Surface {
+    let along = |i: usize, _: usize| f64::from(u8::from(i == variable));
+    Surface {
+        normal: Vector::from_fn(dimension, along),
+        offset: value,
+        direction: Crossing::Downwards,
+        chart: SeriesVariables::Plain,
+    }
+}
+
+/// A state a part of its size away, in a direction that no symmetry has.
+pub(super) fn pushed(y: &Vector, part: f64) -> Vector {
+    let by = |i: usize| (0.4 + 0.3 * (0.7 + 1.3 * i as f64).cos()) * (1.0 + y[i].abs());
+    Vector::from_fn(y.len(), |i, _| y[i] - part * by(i))
 }
 
 /// Widens a range.
@@ -249,21 +449,31 @@ pub(super) fn see(range: &mut (f64, f64), x: f64) {
     *range = (range.0.min(x), range.1.max(x));
 }
 
+/// Widens the reach of all variables by the end of a step, and that of one of them by where it turns on the way.
+pub(super) fn see_all(reach: &mut [(f64, f64)], step: &AnyStep<'_>, variable: usize) {
+    for (range, &y) in reach.iter_mut().zip(step.y1) {
+        see(range, y);
+    }
+    if let Some(turn) = step.series().and_then(|series| turn(series, variable)) {
+        see(&mut reach[variable], turn);
+    }
+}
+
 /// The value of a variable where it turns within a step, if it does once: where its rate, by the polynomial of the step, changes sign.
 pub(super) fn turn(series: &dyn StepSeries, variable: usize) -> Option<f64> {
-    let stress = series.variable(variable);
+    let values = series.variable(variable);
     let end = series.length() / series.unit();
     let rate = |s: f64| {
         let (mut rate, mut slope) = (0.0, 0.0);
-        for k in (1..stress.len()).rev() {
+        for k in (1..values.len()).rev() {
             slope = slope * s + rate;
-            rate = rate * s + k as f64 * stress[k];
+            rate = rate * s + k as f64 * values[k];
         }
         (rate, slope)
     };
-    if stress[1] * rate(end).0 >= 0.0 {
+    if values[1] * rate(end).0 >= 0.0 {
         return None;
     }
-    let turn = bracketed_root("the turn of the stress", 0.0, end, rate).ok()?;
-    Some(evaluate(stress, turn))
+    let turn = bracketed_root("the turn of a variable", 0.0, end, rate).ok()?;
+    Some(evaluate(values, turn))
 }

@@ -15,8 +15,8 @@ const SEARCH: u64 = 400;
 fn no_step_allocates() {
     // Just below the Hopf point of the asymmetric steady state runs return for long.
     let at = |text: &str| SweepSettings {
-        law: AnyLaw::Spinodal(Parameters::heslot_1994().spinodal()),
         grid: Grid::Plane {
+            law: AnyLaw::Spinodal(Parameters::heslot_1994().spinodal()),
             driving: Range::parse("driving", text).unwrap(),
             stiffness: Range::parse("stiffness", "0.14:0.14:1").unwrap(),
         },

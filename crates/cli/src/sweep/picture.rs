@@ -36,13 +36,14 @@ pub fn draw(plan: &SweepPlan, report: &Report<'_>, rows: &[SweepRow], path: &Pat
             loading,
             state_1,
             state_2,
+            ..
         } => views::basin_map(
             &outcomes,
             (&side(state_1), &side(state_2)),
             (loading.driving, loading.stiffness),
             units,
         ),
-        Grid::Laws { axes, .. } | Grid::Systems { axes, .. } => {
+        Grid::Systems { axes, .. } => {
             let sides: Vec<GridSide> = axes.iter().map(side).collect();
             let [along, up] = plan.axis_labels();
             match (&sides[..], basins(plan, &outcomes)) {
@@ -55,7 +56,9 @@ pub fn draw(plan: &SweepPlan, report: &Report<'_>, rows: &[SweepRow], path: &Pat
                 _ => unreachable!("a plan with a picture has an axis or two"),
             }
         }
-        Grid::Plane { driving, stiffness } => {
+        Grid::Plane {
+            driving, stiffness, ..
+        } => {
             let outward = |range: &Range, quantity| GridSide {
                 values: range.values().map(|x| units.outward(quantity, x)).collect(),
                 log: range.log,

@@ -145,12 +145,6 @@ impl Axes {
         Ok(())
     }
 
-    /// Whether a parameter of one interface varies.
-    pub fn tell_interfaces_apart(&self) -> bool {
-        let own = |name: &String| matches!(of_one("grid", name), Ok(Some(_)));
-        self.names.iter().any(own)
-    }
-
     /// The ends of all axes, in all combinations.
     pub fn corners(&self) -> Vec<Vec<f64>> {
         let mut corners = vec![Vec::new()];

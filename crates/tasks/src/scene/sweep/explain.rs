@@ -22,7 +22,7 @@ impl SweepPlan {
         let grid = match &settings.grid {
             Grid::Basin { .. } => "starts (psi1, psi2) at one V_H and K".to_owned(),
             Grid::Plane { .. } => format!("the plane of V_H and K, {starts}"),
-            Grid::Laws { .. } | Grid::Systems { .. } => match &self.basin {
+            Grid::Systems { .. } => match &self.basin {
                 Some(states) => format!("starts ({}) of one system", states.names.join(", ")),
                 None => format!("{}, {starts}", along()),
             },
@@ -52,10 +52,10 @@ impl SweepPlan {
             Grid::Plane { .. } | Grid::Basin { .. } => {
                 "taylor, several points side by side in the lanes of a core"
             }
-            Grid::Laws { .. } | Grid::Systems { .. } => "taylor, one point after the other",
+            Grid::Systems { .. } => "taylor, one point after the other",
         };
         let curves = match (&settings.grid, self.drawn && self.curves.is_empty()) {
-            (Grid::Laws { .. } | Grid::Systems { .. }, true) => {
+            (Grid::Systems { .. }, true) => {
                 "\n  curves            none: those of bifurcations are drawn over V_H and K of equal interfaces, or of one"
             }
             _ => "",

@@ -7,13 +7,13 @@ use super::axes::Axes;
 use crate::scene::plan::NEAR_SYMMETRIC;
 use twinslip::error::Result;
 use twinslip::field::Vector;
-use twinslip::friction::{AnyLaw, Formulas, Law, beside};
+use twinslip::friction::{Formulas, Law, beside};
 use twinslip::integrate::{AnyField, MotionUnits};
-use twinslip::model::{self, Loading};
+use twinslip::model;
 use twinslip::number::polynomial::Crossing;
 use twinslip::section::{Surface, usual_patience};
 use twinslip::sweep::{
-    LawPoints, RandomStart, SectionPlace, SystemPoint, SystemPoints, start_of_interfaces,
+    RandomStart, SectionPlace, SystemPoint, SystemPoints, equal_interfaces, start_of_interfaces,
 };
 
 /// Part of the usual patience: some 20 periods of stick-slip.
@@ -87,17 +87,6 @@ pub(super) fn is_loading(name: &str) -> bool {
     ["driving", "stiffness"].contains(&name)
 }
 
-impl LawPoints for InterfacePoints {
-    fn parameters(&self, values: &[f64]) -> Vec<f64> {
-        self.told(values)
-    }
-
-    fn at(&self, values: &[f64]) -> Result<(AnyLaw, Loading)> {
-        let system = self.system(values)?;
-        Ok((system.law, system.loading()?))
-    }
-}
-
 impl SystemPoints for InterfacePoints {
     fn parameters(&self, values: &[f64]) -> Vec<f64> {
         self.told(values)
@@ -109,7 +98,7 @@ impl SystemPoints for InterfacePoints {
         let field = match (system.interfaces, system.unequal(loading)) {
             (1, _) => AnyField::new::<2>(model::single_interface(system.law, loading)),
             (_, Some(unequal)) => AnyField::new::<3>(Box::new(unequal)),
-            (_, None) => AnyField::new::<3>(model::two_interfaces(system.law, loading)),
+            (_, None) => return Ok(equal_interfaces(system.law, loading, start, random)),
         };
         let stress = system.steady_stress(loading.driving);
         let laws = &system.laws()[..system.interfaces];
@@ -134,7 +123,8 @@ impl SystemPoints for InterfacePoints {
             field,
             start: Vector::from_vec(begin),
             section: SectionPlace::Known(surface, patience),
-            equal_parts: system.interfaces == 2 && system.unequal.is_none(),
+            equal_parts: false,
+            lane: None,
             enclosed: None,
         })
     }

@@ -31,7 +31,6 @@ use serde_json::{Map, Value};
 use std::sync::Arc;
 use text::TextPoints;
 use twinslip::error::{Error, Result, option_name};
-use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::model::Loading;
 use twinslip::sweep::{Grid, SweepSettings, SystemPoints, threads_checked};
 use words::{canonical, numerics};
@@ -95,7 +94,6 @@ struct SweptGrid {
     system: Swept,
     grid: Grid,
     layout: SweepLayout,
-    law: AnyLaw,
     axes: Axes,
     /// The options of a basin.
     states: Vec<(&'static str, String)>,
@@ -113,13 +111,11 @@ impl SweepPlan {
             system,
             grid,
             layout,
-            law,
             axes,
             states,
             basin,
         } = swept(options)?;
         let settings = SweepSettings {
-            law,
             grid,
             starts: options.starts,
             seed: options.seed,
@@ -258,18 +254,9 @@ fn swept(options: &SweepOptions) -> Result<SweptGrid> {
     let others = axes.names.iter().filter(|name| !is_loading(name)).cloned();
     let layout = SweepLayout::interfaces(interfaces, others);
     let starts = starts(options, &axes, &layout.moves, &system.units)?;
-    let equal = interfaces == 2 && system.unequal.is_none() && !axes.tell_interfaces_apart();
-    let grid = match &starts {
-        None if equal => Grid::Laws {
-            axes: axes.ranges.clone(),
-            at: Arc::new(points),
-        },
-        _ => systems(points, &axes, starts.as_ref()),
-    };
     Ok(SweptGrid {
-        grid,
+        grid: systems(points, &axes, starts.as_ref()),
         layout,
-        law: system.law,
         system: Swept::Interfaces(Box::new(system)),
         axes,
         states: starts.as_ref().map_or(Vec::new(), BasinStates::said),
@@ -324,8 +311,6 @@ fn of_text(
     Ok(SweptGrid {
         grid: systems(points, &axes, starts.as_ref()),
         layout,
-        // Other systems have no law; theirs is not looked at.
-        law: AnyLaw::named("spinodal", Parameters::heslot_1994())?,
         system: Swept::Text(Box::new(model)),
         axes,
         states: starts.as_ref().map_or(Vec::new(), BasinStates::said),
@@ -355,12 +340,14 @@ fn plane(
             grain.inward(Quantity::State, units)
         };
         Grid::Basin {
+            law: system.law,
             state_1: needed("state-1", &options.state_1)?,
             state_2: needed("state-2", &options.state_2)?,
             loading: loading(&system, driving, stiffness)?,
         }
     } else {
         Grid::Plane {
+            law: system.law,
             driving: driving.inward(Quantity::SlipRate, units)?,
             stiffness: stiffness.inward(Quantity::Stiffness, units)?,
         }
@@ -368,7 +355,6 @@ fn plane(
     Ok(SweptGrid {
         grid,
         layout: SweepLayout::interfaces(2, std::iter::empty()),
-        law: system.law,
         system: Swept::Interfaces(Box::new(system)),
         axes,
         states,
@@ -421,7 +407,12 @@ fn curves(
         [range.from, range.to].map(|x| system.units.outward(quantity, x))
     };
     let (ends, asked_for) = match (grid, &grid.ranges()[..]) {
-        (Grid::Plane { driving, stiffness }, _) => (
+        (
+            Grid::Plane {
+                driving, stiffness, ..
+            },
+            _,
+        ) => (
             [
                 outward(Quantity::SlipRate, driving),
                 outward(Quantity::Stiffness, stiffness),

@@ -212,6 +212,7 @@ impl SystemPoints for TextPoints {
             start: begin,
             section,
             equal_parts,
+            lane: None,
         })
     }
 }

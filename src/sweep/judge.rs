@@ -1,67 +1,84 @@
 //! Classifies what a run has settled on, from its returns.
 
-use super::closing::apart;
+use super::aperiodic::wandering;
+use super::closing::{ARRIVED, apart};
 use super::flows::Flows;
 use super::orbit::{TOLERANCE, around};
-use super::slow_convergence::{Leap, SlowReturns};
-use super::watch::{SWING, SweepRun};
-use super::{SweepRow, SweepSettings, slow_convergence};
+use super::slow_convergence::{Leap, SlowReturns, comes_as_said, to_rest};
+use super::watch::{SWING, SweepRun, are_alike, pushed};
+use super::{SweepRow, SweepSettings};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
-use crate::field::{State, Vector, state};
+use crate::field::Vector;
 use crate::integrate::{AnyIntegrator, Choice, MAX_STEPS, Tolerances};
 use crate::section::{Ended, Periodic, PeriodicSearch, Regime, at_equilibrium};
 
 /// Log states that differ by less, all along, are those of interfaces that move alike.
 const ALIKE: f64 = 1e-6;
 /// The step at which Newton's method ends; the error then is its square.
-pub(super) const CONVERGED: f64 = 1e-5;
-/// Returns after which a run that has not settled is judged: each time twice as many.
+const CONVERGED: f64 = 1e-5;
+/// Returns after which a run that has not settled is classified: each time twice as many.
 pub(super) const FIRST_STAGE: usize = 64;
-/// Returns without which no run is seen to creep.
-pub(super) const FEWEST_TO_CREEP: usize = 256;
+/// Returns without which no run is seen to converge slowly.
+const FEWEST_TO_CREEP: usize = 256;
 /// A candidate that is none is not looked at again before this part more returns.
-pub(super) const LATER: f64 = 1.3;
+const LATER: f64 = 1.3;
 /// The error of the multipliers by which it is told whether a point attracts, in tolerances.
 const MULTIPLIER_PER_RTOL: f64 = 1e4;
 /// A run this close to an unstable orbit is held on it.
-pub(super) const ON_ORBIT: f64 = 1e-5;
+const ON_ORBIT: f64 = 1e-5;
+/// By how much the next run starts beside the steady state of the point before: of its size, or of equal parts in the last variable.
+const APART: f64 = 1e-4;
 
-/// Judges runs; its integrators are used over and over.
-pub(super) struct Classifier {
-    pub(super) settings: SweepSettings,
+/// Classifies runs; its integrators are used over and over.
+pub(super) struct Judge {
+    pub settings: SweepSettings,
+    /// What advances the runs.
+    pub flows: Flows,
+    /// Of orbits.
     fine: AnyIntegrator,
-    pub(super) coarse: AnyIntegrator,
 }
 
 /// What is known of a run's end, and where the next one may start from it.
-pub(super) struct Classified {
+pub(super) struct Settled {
     pub row: SweepRow,
-    pub attractor: Option<State<3>>,
+    pub attractor: Option<Vector>,
+}
+
+impl Settled {
+    /// The same in the system's own units. Words have them already.
+    pub fn outward(mut self, run: &SweepRun) -> Self {
+        let units = &run.units;
+        let size = units.sizes[run.variable];
+        let row = &mut self.row;
+        row.period = row.period.map(|period| period * units.time);
+        row.range = row.range.map(|(low, high)| (low * size, high * size));
+        row.lyapunov_max = row.lyapunov_max.map(|x| units.outward_rate(x));
+        self.attractor = self.attractor.map(|state| units.outward(&state));
+        self
+    }
 }
 
 /// Whether a run that is not there yet shows where it comes to.
 enum Creeping {
-    To(Box<Classified>),
+    To(Box<Settled>),
     Leapt,
     No,
 }
 
-impl Classifier {
+impl Judge {
     pub fn new(settings: &SweepSettings) -> Result<Self> {
-        let taylor = |tolerance: f64, max_steps: usize| {
-            AnyIntegrator::new(Choice::Taylor, Tolerances::equal(tolerance)?, max_steps)
-        };
-        Ok(Classifier {
+        let fine = Tolerances::equal(TOLERANCE.min(settings.rtol))?;
+        Ok(Judge {
             settings: settings.clone(),
-            fine: taylor(TOLERANCE.min(settings.rtol), MAX_STEPS)?,
-            coarse: taylor(settings.rtol, settings.max_steps)?,
+            flows: Flows::new(settings)?,
+            fine: AnyIntegrator::new(Choice::Taylor, fine, MAX_STEPS)?,
         })
     }
 
     /// What the run has settled on, or `None` if it shall go on.
-    pub fn classify(&mut self, run: &mut SweepRun, flows: &mut Flows) -> Option<Classified> {
-        let told = self.judge(run, flows)?;
+    pub fn classify(&mut self, run: &mut SweepRun) -> Option<Settled> {
+        let told = self.judge(run)?;
         // What is found after a leap, other than where it led to, is not what the run comes to.
         if run.leaps_back() {
             return None;
@@ -69,37 +86,36 @@ impl Classifier {
         Some(told)
     }
 
-    fn judge(&mut self, run: &mut SweepRun, flows: &mut Flows) -> Option<Classified> {
+    fn judge(&mut self, run: &mut SweepRun) -> Option<Settled> {
+        if let Some(why) = run.hopeless.take() {
+            return Some(undecided(run, why));
+        }
         match run.recorder.ended.take() {
-            Some(Ended::Steady {
-                equilibrium,
-                stable,
-                ..
-            }) => return Some(steady(run, &equilibrium, stable)),
+            Some(Ended::Steady { equilibrium, .. }) => return Some(steady(run, &equilibrium)),
             Some(Ended::Failed(error)) => {
                 return match error {
                     Error::NoReturn {
                         lowest, highest, ..
-                    } if run.surface_moves_between(lowest, highest)
-                        || run.let_go(run.state)
+                    } if run.section_moves_between(lowest, highest)
+                        || run.leaves_rest()
                         || run.waits_longer() =>
                     {
                         None
                     }
-                    error => Some(undecided(run, error.to_string())),
+                    error => Some(undecided(run, run.in_words(error))),
                 };
             }
             Some(Ended::Complete | Ended::Stopped) | None => (),
-        }
-        if std::mem::take(&mut run.held) {
-            run.let_go(run.state);
-            return None;
         }
         if run.recorder.steps >= self.settings.max_steps {
             return Some(undecided(
                 run,
                 "its steps are used up; raise `max_steps`".into(),
             ));
+        }
+        // The rounding of an equilibrium on the section returns for ever.
+        if run.leaves_rest() {
+            return None;
         }
         if let Some(q) = run.candidate.take() {
             match self.periodic(run, q) {
@@ -120,10 +136,10 @@ impl Classifier {
             Creeping::No if run.leaps_back() => return None,
             Creeping::No => (),
         }
-        let told = self.wandering(run, flows);
+        let told = wandering(self, run);
         let last = n >= self.settings.max_returns;
         run.next_stage = (2 * n).min(self.settings.max_returns);
-        run.stress = (f64::INFINITY, f64::NEG_INFINITY);
+        run.begin_stage();
         match told {
             Ok(told) => Some(told),
             Err(why) if last => Some(undecided(run, why.into())),
@@ -131,25 +147,39 @@ impl Classifier {
         }
     }
 
-    /// The periodic orbit that the run closes in on.
-    fn periodic(&mut self, run: &mut SweepRun, q: usize) -> Option<Classified> {
-        let at = (&run.field, &run.surface, run.returns());
-        let mut search =
-            PeriodicSearch::new(at.0, at.1, &mut self.coarse, at.2, (self.settings.rtol, q));
-        search.converged = CONVERGED;
-        let found = search.point()?;
-        if self.attracts(&found) {
+    /// The periodic orbit that the run has come to, or comes to as fast as its multipliers say. From one that does not attract it is let
+    /// go, where it is held there.
+    fn periodic(&mut self, run: &mut SweepRun, q: usize) -> Option<Settled> {
+        let (rtol, unit) = (self.settings.rtol, run.unit);
+        let found = self.near(run, q)?;
+        let returns = run.returns();
+        let last = &returns.last()?.state;
+        if attracts(&found, rtol) {
+            let arrived = apart(last, &found.point) < ARRIVED * unit;
+            if !arrived && !comes_as_said(run.surface.chart, returns, &found) {
+                return None;
+            }
             let told = self.orbit(run, &found)?;
             // A leap is confirmed where it led to.
-            let same = |leap: &mut Leap| apart(&leap.to.point, &found.point) < CONVERGED;
+            let same = |leap: &mut Leap| apart(&leap.to.point, &found.point) < CONVERGED * unit;
             run.leap.take_if(same);
             return Some(told);
         }
-        let y = &run.returns().last()?.state;
-        if apart(y, &found.point) < ON_ORBIT {
-            run.let_go(state(y.as_slice()));
+        if apart(last, &found.point) < ON_ORBIT * unit {
+            let last = last.clone();
+            run.let_go(&last);
         }
         None
+    }
+
+    /// The q-periodic point near the last return.
+    fn near(&mut self, run: &SweepRun, q: usize) -> Option<Periodic> {
+        let (accuracy, returns) = (self.settings.rtol, run.returns());
+        let coarse = self.flows.one();
+        let search = PeriodicSearch::new(&run.field, &run.surface, coarse, returns, (accuracy, q));
+        let mut search = search.in_units(run.unit);
+        search.converged = CONVERGED * run.unit;
+        search.point()
     }
 
     /// What the run creeps to.
@@ -162,22 +192,25 @@ impl Classifier {
             if !leap.is_confirmed_by(returns) {
                 return Creeping::No;
             }
+            let to = leap.to.clone();
             if !leap.is_near(returns) {
-                return self.leap(run, leap.to.clone());
+                return self.leap(run, to);
             }
-            Some(leap.to.clone())
+            // Its last step is above rounding there, so that it shows how the multipliers change.
+            let here = self.near(run, to.returns);
+            here.filter(|here| apart(&here.point, &to.point) < CONVERGED * run.unit)
+                .or(Some(to))
         } else {
-            let far = self.slow(run).ahead();
+            let far = run.may_leap().then(|| self.slow(run).ahead()).flatten();
             if let Some(Creeping::Leapt) = far.map(|far| self.leap(run, far)) {
                 return Creeping::Leapt;
             }
             if run.returns().len() < FEWEST_TO_CREEP {
                 return Creeping::No;
             }
-            if let Some(equilibrium) =
-                slow_convergence::to_rest(&run.field, &run.surface, run.returns(), 1.0)
-            {
-                return Creeping::To(Box::new(steady(run, &equilibrium, true)));
+            let rest = to_rest(&run.field, &run.surface, run.returns(), run.unit);
+            if let Some(equilibrium) = rest {
+                return Creeping::To(Box::new(steady(run, &equilibrium)));
             }
             // Where little is between the map and the identity, the point is off by much more than the map.
             self.slow(run).nearby()
@@ -201,7 +234,7 @@ impl Classifier {
             taylor: &mut self.fine,
             returns: run.returns(),
             accuracy: self.settings.rtol,
-            unit: 1.0,
+            unit: run.unit,
         }
     }
 
@@ -223,16 +256,22 @@ impl Classifier {
         attracts(found, self.settings.rtol)
     }
 
-    fn orbit(&mut self, run: &SweepRun, found: &Periodic) -> Option<Classified> {
-        let orbit = around(&run.field, &run.surface, &mut self.fine, found, 0)?;
+    fn orbit(&mut self, run: &SweepRun, found: &Periodic) -> Option<Settled> {
+        let orbit = around(
+            &run.field,
+            &run.surface,
+            &mut self.fine,
+            found,
+            run.variable,
+        )?;
         // Returns beside a steady state on the section repeat themselves too.
         if orbit.range.1 - orbit.range.0 < SWING {
             return None;
         }
         let mut told = begun(run, Regime::Periodic);
-        told.attractor = Some(state(orbit.point.as_slice()));
+        told.attractor = Some(orbit.point);
         told.row.period = Some(orbit.period);
-        told.row.symmetry = Some(symmetry(orbit.unlike));
+        told.row.symmetry = run.equal_parts.then(|| symmetry(orbit.unlike));
         told.row.returns_per_period = Some(found.returns);
         told.row.range = Some(orbit.range);
         told.row.lyapunov_max = orbit.exponent;
@@ -241,15 +280,11 @@ impl Classifier {
 }
 
 /// Whether a point attracts, beyond the error of its multiplier at this tolerance.
-pub(super) fn attracts(found: &Periodic, rtol: f64) -> bool {
+fn attracts(found: &Periodic, rtol: f64) -> bool {
     found.attracts() && found.multiplier < 1.0 - MULTIPLIER_PER_RTOL * rtol
 }
 
-pub(super) fn alike(y: &Vector) -> bool {
-    (y[1] - y[2]).abs() < ALIKE
-}
-
-pub(super) fn symmetry(unlike: f64) -> Symmetry {
+fn symmetry(unlike: f64) -> Symmetry {
     if unlike < ALIKE {
         Symmetry::Symmetric
     } else {
@@ -258,42 +293,50 @@ pub(super) fn symmetry(unlike: f64) -> Symmetry {
 }
 
 /// A row of which the regime is known.
-pub(super) fn begun(run: &SweepRun, regime: Regime) -> Classified {
-    let point = &run.point;
-    let (parameters, start) = (point.parameters.clone(), point.start.as_slice().to_vec());
-    let note = (run.pushes > 0).then(|| {
-        "equal interfaces, held by rounding where that is unstable, were let go by 0.001 in ln psi2"
-            .into()
-    });
-    Classified {
+pub(super) fn begun(run: &SweepRun, regime: Regime) -> Settled {
+    let note = (run.pushes > 0)
+        .then(|| "held by a symmetry or its start where that is unstable, it was let go by 0.001 of its size".into());
+    Settled {
         row: SweepRow {
-            returns: run.recorder.passed,
+            regime,
             note,
-            ..SweepRow::new(point.number, parameters, start, regime)
+            returns: run.recorder.passed,
+            ..run.row.clone()
         },
-        attractor: run
-            .recorder
-            .returns
-            .last()
-            .map(|at| state(at.state.as_slice())),
+        attractor: run.recorder.returns.last().map(|at| at.state.clone()),
     }
 }
 
-pub(super) fn steady(run: &SweepRun, equilibrium: &Vector, stable: bool) -> Classified {
+pub(super) fn steady(run: &SweepRun, equilibrium: &Vector) -> Settled {
     let mut told = begun(run, Regime::Steady);
-    told.attractor = Some(state(equilibrium.as_slice()));
-    told.row.symmetry = Some(symmetry((equilibrium[1] - equilibrium[2]).abs()));
-    told.row.range = Some((equilibrium[0], equilibrium[0]));
+    let last = equilibrium.len() - 1;
+    let value = equilibrium[run.variable];
+    told.row.range = Some((value, value));
     told.row.lyapunov_max = Some(at_equilibrium(&run.field, equilibrium)[0]);
-    if !stable {
-        told.row.note = Some("starts at an unstable steady state and rests there".into());
-    }
+    // From the state itself the next run would come to rest where that is unstable.
+    told.attractor = Some(match run.equal_parts {
+        true => {
+            let unlike = (equilibrium[last - 1] - equilibrium[last]).abs();
+            told.row.symmetry = Some(symmetry(unlike));
+            let mut beside = equilibrium.clone();
+            if unlike < APART {
+                beside[last] = beside[last - 1] + APART;
+            }
+            beside
+        }
+        false => pushed(equilibrium, APART),
+    });
     told
 }
 
-pub(super) fn undecided(run: &SweepRun, why: String) -> Classified {
+pub(super) fn undecided(run: &SweepRun, why: String) -> Settled {
     let mut told = begun(run, Regime::Undecided);
     told.row.note = Some(why);
     told.attractor = None;
     told
+}
+
+/// Whether the last two variables of a state, of equal parts, move alike.
+pub(super) fn alike(y: &Vector) -> bool {
+    are_alike(y.as_slice(), ALIKE)
 }

@@ -1,10 +1,12 @@
 //! The transient of a system of which no scale of time is known: how long it takes to swing, and between which values.
 
-use super::run::{BETWEEN_LOOKS, GeneralRun, caught, goes_to_infinity, see_all};
-use super::{Enclosure, GeneralSweeper, SectionPlace};
+use super::judge::Judge;
+use super::points::SectionPlace;
+use super::watch::{BETWEEN_LOOKS, SweepRun, caught, see_all};
 use crate::error::Result;
 use crate::integrate::{AnyStep, Control};
 use crate::section::equilibrium_near;
+use std::rc::Rc;
 
 /// Steps of the first window; each later one has twice as many as the one before.
 const FIRST_WINDOW: usize = 512;
@@ -17,14 +19,14 @@ const AT_REST: f64 = 1e-7;
 /// A run may be away from its section for so many times the last window.
 const PATIENCE: f64 = 4.0;
 
-impl GeneralSweeper {
+impl Judge {
     /// Lets the transient pass, puts the section in the middle of what the run then swings through where that is asked for, and measures
     /// the time that it may wait for a return.
     ///
     /// # Errors
     /// Those of the integrator.
-    pub(super) fn pass_transient(&mut self, run: &mut GeneralRun) -> Result<()> {
-        if matches!(run.place, SectionPlace::Known(..)) || run.recorder.ended.is_some() {
+    pub(super) fn pass_transient(&mut self, run: &mut SweepRun) -> Result<()> {
+        if run.is_timed() || run.recorder.ended.is_some() {
             return Ok(());
         }
         // The first window shows nothing but the way to where the run swings.
@@ -64,53 +66,36 @@ impl GeneralSweeper {
     }
 
     /// Goes so many steps on, unless a stable equilibrium is reached; how often the variable of the section has turned round.
-    fn pass(&mut self, run: &mut GeneralRun, window: usize) -> Result<usize> {
-        let (now, from) = (run.time, run.state.clone());
+    fn pass(&mut self, run: &mut SweepRun, window: usize) -> Result<usize> {
+        let (now, from, field) = (run.time, run.state.clone(), Rc::clone(&run.field));
         let (mut steps, mut turns, mut rising) = (0, 0, None);
-        let GeneralRun {
-            units,
-            field,
-            time,
-            state,
-            reach,
-            recorder,
-            variable,
-            hopeless,
-            enclosed,
-            attraction,
-            ..
-        } = run;
         let mut observer = |step: &AnyStep<'_>| {
-            let rises = step.y1[*variable] > state[*variable];
+            let rises = step.y1[run.variable] > run.state[run.variable];
             turns += usize::from(rising.is_some_and(|before| before != rises));
             rising = Some(rises);
-            *time = step.t1;
-            state.copy_from_slice(step.y1);
-            see_all(reach, step, *variable);
+            run.come_to(step);
+            see_all(&mut run.reach, step, run.variable);
             steps += 1;
-            recorder.steps += 1;
-            if goes_to_infinity(units, step, hopeless) {
+            run.recorder.steps += 1;
+            if run.goes_to_infinity(step) {
                 return Ok(Control::Stop);
             }
-            if steps % BETWEEN_LOOKS == 0 {
-                let rest = match equilibrium_near(field, step.y1, AT_REST) {
-                    Some((equilibrium, true)) => Some(equilibrium),
-                    _ => enclosed.as_ref().and_then(|Enclosure(equations)| {
-                        attraction.of(field, &**equations, step.y1)
-                    }),
+            let ended = steps % BETWEEN_LOOKS == 0
+                && match equilibrium_near(&field, step.y1, AT_REST) {
+                    Some((equilibrium, true)) => {
+                        run.recorder.ended = Some(caught(step.t1, equilibrium));
+                        true
+                    }
+                    _ => run.is_caught(step),
                 };
-                if let Some(equilibrium) = rest {
-                    recorder.ended = Some(caught(step, equilibrium));
-                    return Ok(Control::Stop);
-                }
-            }
-            Ok(match steps >= window {
+            Ok(match ended || steps >= window {
                 true => Control::Stop,
                 false => Control::Continue,
             })
         };
         let span = (now, f64::MAX);
-        self.coarse.flow(field, span, &from, Some(&mut observer))?;
+        let one = self.flows.one();
+        one.flow(&field, span, &from, Some(&mut observer))?;
         Ok(turns)
     }
 }
