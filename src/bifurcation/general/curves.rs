@@ -57,13 +57,13 @@ pub fn equilibrium_curves(
 }
 
 /// The values of a coordinate at which bifurcations along the other one are looked for.
-pub(super) fn scanned(curve: &GeneralCurve<'_>, coordinate: usize) -> Vec<f64> {
+pub(in crate::bifurcation) fn scanned(curve: &GeneralCurve<'_>, coordinate: usize) -> Vec<f64> {
     let (from, to) = curve.ranges[coordinate];
     SCAN.map(|part| from + (to - from) * part).to_vec()
 }
 
 /// Looks along one of both coordinates at a value of the other one; the coordinates of what is met come in the order of the branch.
-pub(super) fn looked_along<R>(
+pub(in crate::bifurcation) fn looked_along<R>(
     curve: &GeneralCurve<'_>,
     along: usize,
     held: f64,
@@ -72,12 +72,14 @@ pub(super) fn looked_along<R>(
     let system = curve.system;
     let family = Exchanged(system.family);
     let alike = system.alike.map(Exchanged);
+    let difference = system.difference.map(Exchanged);
     let equilibria = |at: [f64; 2]| (system.equilibria)([at[1], at[0]]);
     let system = match along {
         0 => system,
         _ => GeneralSystem {
             family: &family,
             alike: alike.as_ref().map(|alike| alike as _),
+            difference: difference.as_ref().map(|difference| difference as _),
             names: [system.names[1], system.names[0]],
             equilibria: &equilibria,
             ..system
@@ -91,6 +93,8 @@ pub(super) fn looked_along<R>(
         at: Vec::new(),
         orbit: None,
         found: None,
+        hopfs: None,
+        symmetry: None,
         doublings: 0,
         within: None,
         following: super::GeneralFollowing {
@@ -101,7 +105,7 @@ pub(super) fn looked_along<R>(
 }
 
 /// The coordinates in the order of the curve of those of a branch along one of them.
-pub(super) fn in_order<T: Copy>(along: usize, at: [T; 2]) -> [T; 2] {
+pub(in crate::bifurcation) fn in_order<T: Copy>(along: usize, at: [T; 2]) -> [T; 2] {
     match along {
         0 => at,
         _ => [at[1], at[0]],
@@ -109,7 +113,7 @@ pub(super) fn in_order<T: Copy>(along: usize, at: [T; 2]) -> [T; 2] {
 }
 
 /// A family with its coordinates exchanged.
-struct Exchanged<'a>(&'a dyn ParametrisedField);
+pub(in crate::bifurcation) struct Exchanged<'a>(pub &'a dyn ParametrisedField);
 
 impl ParametrisedField for Exchanged<'_> {
     fn dimension(&self) -> usize {

@@ -44,11 +44,12 @@ pub fn equilibria(branch: &GeneralBranch<'_>, seen: GeneralObserver<'_>) -> Resu
 }
 
 /// An observer of points and their kinds.
-pub(super) type PointObserver<'a> = &'a mut dyn FnMut(GeneralPoint, Reported) -> ControlFlow<()>;
+pub(in crate::bifurcation) type PointObserver<'a> =
+    &'a mut dyn FnMut(GeneralPoint, Reported) -> ControlFlow<()>;
 
 /// The kind of a point that is reported.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Reported {
+pub(in crate::bifurcation) enum Reported {
     /// A row.
     Row,
     /// A special point, with its row.
@@ -58,7 +59,7 @@ pub(super) enum Reported {
 }
 
 /// All branches, and what is known of them so far.
-pub(super) struct EquilibriumBranches<'b, 'a> {
+pub(in crate::bifurcation) struct EquilibriumBranches<'b, 'a> {
     branch: &'b GeneralBranch<'a>,
     count: usize,
     /// Where branches ended, (state, coordinate).

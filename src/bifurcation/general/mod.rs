@@ -3,24 +3,16 @@
 //! Equilibria begin at those that the system knows at both ends of a range, and go on through branch points; orbits begin at the
 //! Hopf points met on them, or at an orbit that is given. What is met is told as it comes.
 
-mod curves;
-mod ends;
-mod equilibria;
-mod growing_period;
+pub(super) mod curves;
+pub(super) mod equilibria;
 mod multiple;
-mod multipliers_together;
-mod orbit_branch;
-mod orbit_curves;
-mod orbit_point;
-mod orbits;
 mod runaway;
-mod splits;
-mod turning;
+pub(super) mod splits;
 
+pub use super::orbits::{HopfBeginning, orbit_curves, orbits};
 pub use curves::equilibrium_curves;
+pub(super) use curves::{Exchanged, in_order};
 pub use equilibria::equilibria;
-pub use orbit_curves::orbit_curves;
-pub use orbits::orbits;
 pub use splits::WithinClusters;
 
 use super::orbits::{SpecialOrbit, second};
@@ -39,9 +31,9 @@ use nalgebra::Complex;
 use std::ops::ControlFlow;
 
 /// Points nearer to each other than this, in units of 1 + |x|, are one; so are orbits whose coordinates, and ln T, differ by less.
-const SAME: f64 = 1e-6;
+pub(super) const SAME: f64 = 1e-6;
 /// The parameter that varies along a branch, among the coordinates.
-const FREE: usize = 0;
+pub(super) const FREE: usize = 0;
 
 /// The equilibria that are known at some coordinates of the parameters.
 pub type KnownEquilibria<'a> = &'a (dyn Fn([f64; 2]) -> Result<Vec<Vector>> + Sync);
@@ -54,6 +46,9 @@ pub struct StateRange {
     /// What is said of a branch that leaves it at either of these.
     pub said: [String; 2],
 }
+
+/// The Hopf points of equilibria of a symmetry, by their coordinate.
+pub type KnownHopfPoints<'a> = &'a dyn Fn(Symmetry) -> Result<Vec<HopfBeginning>>;
 
 /// Periodic orbits that can be found at values of the parameter that varies.
 #[derive(Clone, Copy)]
@@ -71,6 +66,8 @@ pub struct GeneralSystem<'a> {
     pub family: &'a dyn ParametrisedField,
     /// Of two equal parts the family of states in which they move alike, in the same coordinates.
     pub alike: Option<&'a dyn ParametrisedField>,
+    /// Of two equal parts the family in the variables that keep their difference where the others lose it.
+    pub difference: Option<&'a dyn ParametrisedField>,
     /// Groups of variables whose exchange changes nothing: solutions that are mirror images of each other are one.
     pub interchangeable: &'a [Vec<usize>],
     /// The names of the parameters, by which fields know their derivatives.
@@ -98,6 +95,10 @@ pub struct GeneralBranch<'a> {
     pub orbit: Option<ContinuationPoint>,
     /// Where orbits begin if no Hopf point leads to any.
     pub found: Option<FoundOrbits<'a>>,
+    /// Of two equal parts the Hopf points, where they are known otherwise than from branches of equilibria.
+    pub hopfs: Option<KnownHopfPoints<'a>>,
+    /// Of two equal parts: one symmetry, or both.
+    pub symmetry: Option<Symmetry>,
     /// How many times orbits may double their period.
     pub doublings: usize,
     /// Of interfaces in clusters what a split of each grows by.
@@ -176,6 +177,8 @@ pub struct GeneralPoint {
     pub number: usize,
     /// What is special here.
     pub label: Option<Label>,
+    /// Of two equal parts, whether both move alike on the branch or curve, where that is known.
+    pub symmetry: Option<Symmetry>,
     /// The coordinates.
     pub at: [f64; 2],
     /// The parameters; of points that are not special their uncertainty is not known.
@@ -209,34 +212,44 @@ pub struct GeneralPoint {
 impl GeneralSolution {
     /// Whether the last two of three variables, or the one that stands for both, are equal all along.
     pub fn symmetry(&self) -> Symmetry {
-        /// A difference along an orbit as a part of how far it goes: beside a pitchfork, where the difference is neutral, Newton's method leaves
-        /// about the third root of its tolerance.
-        const NEUTRAL: f64 = 1e-4;
-        let apart = |x: &Vector| (x[1] - x[x.len() - 1]).abs();
-        let symmetric = match self {
+        match self {
             GeneralSolution::Equilibrium { state, .. } => {
-                apart(state) < SAME * (1.0 + state[1].abs())
+                let apart = (state[1] - state[state.len() - 1]).abs();
+                match apart < SAME * (1.0 + state[1].abs()) {
+                    true => Symmetry::Symmetric,
+                    false => Symmetry::Asymmetric,
+                }
             }
-            GeneralSolution::Orbit { shooting, .. } => {
-                let of_first = shooting.nodes.iter().map(|x| x[1]);
-                let (least, most) = of_first
-                    .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), x| {
-                        (least.min(x), most.max(x))
-                    });
-                let apart = shooting.nodes.iter().map(apart).fold(0.0, f64::max);
-                apart < NEUTRAL * (most - least)
-            }
-        };
-        match symmetric {
-            true => Symmetry::Symmetric,
-            false => Symmetry::Asymmetric,
+            GeneralSolution::Orbit { shooting, .. } => symmetry_of(shooting),
         }
     }
 }
 
+/// Whether the last two of three variables of an orbit, or the one that stands for both, are equal all along.
+pub(super) fn symmetry_of(shooting: &ShootingNodes) -> Symmetry {
+    /// A difference along an orbit as a part of how far it goes: beside a pitchfork, where the difference is neutral, Newton's method leaves
+    /// about the third root of its tolerance.
+    const NEUTRAL: f64 = 1e-4;
+    let apart = |x: &Vector| (x[1] - x[x.len() - 1]).abs();
+    let apart = shooting.nodes.iter().map(apart).fold(0.0, f64::max);
+    match apart < NEUTRAL * shooting.extents()[1] {
+        true => Symmetry::Symmetric,
+        false => Symmetry::Asymmetric,
+    }
+}
+
 impl GeneralSystem<'_> {
+    /// Whether there are solutions of this symmetry.
+    pub(super) fn has(&self, symmetry: Symmetry) -> bool {
+        let alike = self.alike.map(ParametrisedField::dimension);
+        match symmetry {
+            Symmetry::Symmetric => alike.is_some(),
+            Symmetry::Asymmetric => alike.is_none_or(|alike| alike < self.family.dimension()),
+        }
+    }
+
     /// One of a solution and its mirror images, the same whichever is given: numbers of interchangeable variables in ascending order.
-    fn representative(&self, numbers: &Vector) -> Vector {
+    pub(super) fn representative(&self, numbers: &Vector) -> Vector {
         let mut representative = numbers.clone();
         for group in self.interchangeable {
             let mut sorted: Vec<f64> = group.iter().map(|&i| numbers[i]).collect();
@@ -296,10 +309,11 @@ impl GeneralPoint {
         self
     }
 
-    fn new(number: usize, at: [f64; 2], solution: GeneralSolution) -> Self {
+    pub(super) fn new(number: usize, at: [f64; 2], solution: GeneralSolution) -> Self {
         GeneralPoint {
             number,
             label: None,
+            symmetry: None,
             at,
             parameters: [Uncertain::new(0.0, f64::INFINITY); 2],
             solution,
@@ -318,7 +332,7 @@ impl GeneralPoint {
     }
 
     /// With the parameters of its coordinates, which may be off by so much.
-    fn placed(mut self, family: &dyn ParametrisedField, uncertainty: [f64; 2]) -> Self {
+    pub(super) fn placed(mut self, family: &dyn ParametrisedField, uncertainty: [f64; 2]) -> Self {
         let (values, scale) = (family.parameters(self.at), family.scale(self.at));
         for i in 0..2 {
             let off = uncertainty[i] * scale[i].abs() + 2.0 * f64::EPSILON * values[i].abs();
@@ -363,17 +377,17 @@ impl GeneralPoint {
 }
 
 /// Tells of rows as long as there are no more than allowed, and of those branches only that are asked for.
-struct Teller<'t> {
+pub(super) struct Teller<'t> {
     seen: GeneralObserver<'t>,
     skip: &'t [usize],
     left: usize,
     limit: usize,
     beyond: bool,
-    told: ControlFlow<()>,
+    pub told: ControlFlow<()>,
 }
 
 impl<'t> Teller<'t> {
-    fn new(seen: GeneralObserver<'t>, following: &'t GeneralFollowing) -> Self {
+    pub fn new(seen: GeneralObserver<'t>, following: &'t GeneralFollowing) -> Self {
         Teller {
             seen,
             skip: &following.skip,
@@ -384,7 +398,7 @@ impl<'t> Teller<'t> {
         }
     }
 
-    fn tell(&mut self, event: GeneralEvent) -> ControlFlow<()> {
+    pub fn tell(&mut self, event: GeneralEvent) -> ControlFlow<()> {
         self.told?;
         let (GeneralEvent::Row(point) | GeneralEvent::Special(point)) = &event;
         if self.skip.contains(&point.number) {
@@ -403,7 +417,7 @@ impl<'t> Teller<'t> {
     }
 
     /// A point, with a row, and special or not.
-    fn point(&mut self, point: GeneralPoint, special: bool) -> ControlFlow<()> {
+    pub fn point(&mut self, point: GeneralPoint, special: bool) -> ControlFlow<()> {
         match special {
             true => self.special(point),
             false => self.tell(GeneralEvent::Row(point)),
@@ -411,14 +425,14 @@ impl<'t> Teller<'t> {
     }
 
     /// A special point and its row.
-    fn special(&mut self, point: GeneralPoint) -> ControlFlow<()> {
+    pub fn special(&mut self, point: GeneralPoint) -> ControlFlow<()> {
         self.tell(GeneralEvent::Special(point.clone()))?;
         self.tell(GeneralEvent::Row(point))
     }
 
     /// # Errors
     /// [`Error::TooManyPoints`] where there were more than allowed.
-    fn end(self) -> Result<()> {
+    pub fn end(self) -> Result<()> {
         match self.beyond {
             true => Err(Error::TooManyPoints { limit: self.limit }),
             false => Ok(()),

@@ -28,7 +28,7 @@ impl Multiple {
 
 impl EquilibriumBranches<'_, '_> {
     /// A branch point at which several eigenvalues are 0, with the branches that begin there; cylinders have at first this radius.
-    pub fn multiple(&self, point: &MultiplePoint, radius: f64) -> Multiple {
+    pub(super) fn multiple(&self, point: &MultiplePoint, radius: f64) -> Multiple {
         let branches = self.with_family(|family| point.branches(family, radius));
         let (all, radius) = branches.unwrap_or_default();
         // Mirror images are one.

@@ -2,7 +2,7 @@
 
 use super::{GeneralBranch, GeneralEvent, GeneralObserver, GeneralPoint, GeneralSolution};
 use crate::bifurcation::Label;
-use crate::bifurcation::general::orbit_point::orbit_point;
+use crate::bifurcation::orbits::{Chart, orbit_point};
 use crate::error::Result;
 use crate::field::Vector;
 use crate::number::Uncertain;
@@ -79,7 +79,8 @@ impl<'s, 'a> Splits<'s, 'a> {
             } else {
                 to
             };
-            let mut point = solution_at(&mut corrector, near, [x, near.at[1]])?;
+            let chart = Chart::whole(&self.branch.system);
+            let mut point = solution_at(chart, &mut corrector, near, [x, near.at[1]])?;
             point.within = (self.within)(&point, true).ok()?;
             Some(point)
         };
@@ -136,7 +137,7 @@ impl<'s, 'a> Splits<'s, 'a> {
 }
 
 /// Goes along a branch with an observer that splits are told to as well.
-pub(super) fn with_splits(
+pub(in crate::bifurcation) fn with_splits(
     branch: &GeneralBranch<'_>,
     seen: GeneralObserver<'_>,
     along: impl FnOnce(GeneralObserver<'_>) -> Result<()>,
@@ -149,6 +150,7 @@ pub(super) fn with_splits(
 
 /// The solution at these coordinates near another one.
 fn solution_at(
+    chart: Chart<'_>,
     corrector: &mut Corrector<'_>,
     near: &GeneralPoint,
     at: [f64; 2],
@@ -161,7 +163,7 @@ fn solution_at(
             };
             let held = [Condition::Parameter(0, at[0])];
             let orbit = corrector.correct(site, &[0], &held, Goal::SHARP).ok()?;
-            Some(orbit_point(near.number, &orbit, None))
+            Some(orbit_point(chart, near.number, &orbit, None))
         }
         GeneralSolution::Equilibrium { state, eigenvalues } => {
             let state = equilibrium(corrector.family, at, state.clone())?;

@@ -1,7 +1,7 @@
 //! The cubic coefficient of the normal form: the criticality of a bifurcation, and where along a curve that changes.
 
-use super::chart::Chart;
 use super::normal_form::Form;
+use super::slab_chart::Chart;
 use crate::bifurcation::{Criticality, Label, Special};
 use crate::equilibrium::Symmetry;
 use crate::model::{DRIVING, Parameter, STIFFNESS};

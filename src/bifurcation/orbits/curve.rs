@@ -1,6 +1,6 @@
 //! One two-parameter curve of bifurcations, followed in both directions from a point on it.
 
-use super::branch::new_corrector;
+use super::branches::new_corrector;
 use super::half_curve::{HalfCurve, Pass};
 use super::locus::Locus;
 use super::scan::core_to_spare;

@@ -1,11 +1,11 @@
 //! Half of a two-parameter curve of bifurcations: from its first point in one direction.
 
-use super::branch::{ROUGH, new_corrector};
-use super::chart::{Chart, middle};
+use super::branches::{ROUGH, new_corrector};
 use super::cubic_coefficient::{CubicCoefficient, Decided, degenerate_pitchfork};
 use super::locus::Locus;
 use super::refine::{rough, special};
 use super::rows::{GivenParameters, asked};
+use super::slab_chart::{Chart, middle};
 use super::top::top;
 use crate::bifurcation::{Event, EventObserver, Label, LocusRequest, LocusRow, Special};
 use crate::continuation::{Met, Stop};

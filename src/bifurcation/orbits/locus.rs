@@ -4,10 +4,10 @@
 //! They start from the bifurcations met along a few branches, and are followed both ways with V_H and K free: past their tops,
 //! through resonances, to where the bifurcation ceases to be one.
 
-use super::chart::Chart;
 use super::curve::through;
 use super::half_curve::Pass;
 use super::scan::Scan;
+use super::slab_chart::Chart;
 use crate::bifurcation::{Event, EventObserver, LocusKind, LocusRequest, within};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};

@@ -4,7 +4,8 @@
 //! but few solutions may agree by chance, so the noise of the flow, as the equations carry it to the point, counts as well.
 //! What can't be solved more than once claims nothing.
 
-use super::chart::Chart;
+use super::slab_chart::Chart;
+use crate::bifurcation::general::in_order;
 use crate::bifurcation::{Label, Special};
 use crate::integrate::Choice;
 use crate::model::{DRIVING, STIFFNESS};
@@ -33,6 +34,21 @@ impl SpecialOrbit {
     /// come so near each other that these lose their difference, in (tau, ln psi_2, ln(psi_1 - psi_2)).
     pub fn nodes(&self) -> (&[Vec<f64>], &[f64]) {
         (&self.nodes, &self.durations)
+    }
+
+    /// The same over the plane of its parameters in the other order.
+    pub(super) fn exchanged(self) -> Self {
+        let meets = |watch: WatchedFunction| match watch {
+            WatchedFunction::Turn(i) => WatchedFunction::Turn(1 - i),
+            WatchedFunction::Value(i, value) => WatchedFunction::Value(1 - i, value),
+            WatchedFunction::TestFunction(_) => watch,
+        };
+        SpecialOrbit {
+            at: in_order(1, self.at),
+            meets: self.meets.into_iter().map(meets).collect(),
+            free: self.free.into_iter().map(|i| 1 - i).collect(),
+            ..self
+        }
     }
 }
 
@@ -188,17 +204,17 @@ impl RefinedPoint {
     pub fn special(&self, label: Label) -> Special {
         Special {
             period: Some(self.period),
-            orbit: Some(self.special_orbit()),
+            orbit: Some(self.special_orbit(false)),
             ..Special::new(label, self.at[DRIVING], self.at[STIFFNESS])
         }
     }
 
     /// What is needed to compute it once more.
-    pub fn special_orbit(&self) -> SpecialOrbit {
+    pub fn special_orbit(&self, in_difference_chart: bool) -> SpecialOrbit {
         let ContinuationPoint { shooting, at } = &self.orbit.site;
         let nodes = shooting.nodes.iter();
         SpecialOrbit {
-            in_difference_chart: false,
+            in_difference_chart,
             nodes: nodes.map(|x| x.as_slice().to_vec()).collect(),
             durations: shooting.durations.clone(),
             at: *at,

@@ -1,7 +1,7 @@
 //! Where curves of bifurcations begin: the bifurcations along branches at a few values of K, found once for all kinds of curves
 //! that are wanted.
 
-use super::chart::Chart;
+use super::slab_chart::Chart;
 use crate::continuation::Met;
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};

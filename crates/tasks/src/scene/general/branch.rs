@@ -147,6 +147,7 @@ impl<'s> GeneralBranchPlan<'s> {
         let system = GeneralSystem {
             family: &*family,
             alike: alike.as_deref(),
+            difference: None,
             names: [name; 2],
             interchangeable: &[],
             equilibria: &|_| Ok(Vec::new()),
@@ -183,6 +184,7 @@ impl<'s> GeneralBranchPlan<'s> {
             system: GeneralSystem {
                 family: &*family,
                 alike: alike.as_deref(),
+                difference: None,
                 names: [name; 2],
                 interchangeable: &interchangeable,
                 equilibria: &equilibria_at,
@@ -194,6 +196,8 @@ impl<'s> GeneralBranchPlan<'s> {
             at: self.free.landings(),
             orbit: None,
             found: None,
+            hopfs: None,
+            symmetry: None,
             doublings: self.doublings,
             within: clusters.then_some(&within),
             following: general(&self.following, known),

@@ -233,6 +233,7 @@ impl<'s> GeneralLocusPlan<'s> {
         let system = GeneralSystem {
             family: &*family,
             alike: alike.as_deref(),
+            difference: None,
             names,
             interchangeable: &[],
             equilibria: &|_| Ok(Vec::new()),
@@ -292,6 +293,7 @@ impl<'s> GeneralLocusPlan<'s> {
             system: GeneralSystem {
                 family: &*family,
                 alike: alike.as_deref(),
+                difference: None,
                 names,
                 interchangeable: &interchangeable,
                 equilibria: &equilibria,

@@ -100,7 +100,10 @@ impl GeneralRow {
         }
         let symmetry = subject.has_equal_parts();
         Ok(GeneralRow {
-            symmetry: symmetry.then(|| point.solution.symmetry()),
+            symmetry: symmetry.then(|| {
+                let own = || point.solution.symmetry();
+                point.symmetry.unwrap_or_else(own)
+            }),
             number: point.number,
             parameters,
             numbers,

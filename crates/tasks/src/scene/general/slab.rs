@@ -7,7 +7,6 @@ use crate::scene::system::{Described, System};
 use crate::scene::units::{Quantity, Units};
 use serde_json::{Map, Value};
 use twinslip::bifurcation::general::{GeneralPoint, GeneralSolution};
-use twinslip::bifurcation::orbits::embedded;
 use twinslip::equilibrium::{Symmetry, unequal_steady_states};
 use twinslip::error::{Error, Result};
 use twinslip::field::{Matrix, Parametrised, State, Vector};
@@ -312,13 +311,7 @@ impl Subject for SlabSubject {
                 false => find_unequal(&interfaces, InitialGuess::Anywhere, &accuracy),
             }
         };
-        let found = search().map_or(Vec::new(), FoundOrbit::beginnings);
-        let plane = |orbit: &ContinuationPoint| orbit.shooting.dimension() == 2;
-        let whole = |orbit| match self.equal && plane(&orbit) {
-            true => embedded(&orbit),
-            false => orbit,
-        };
-        found.into_iter().map(whole).collect()
+        search().map_or(Vec::new(), FoundOrbit::beginnings)
     }
 
     fn coordinate(&self, name: &str, ends: [f64; 2]) -> Result<Coordinate> {

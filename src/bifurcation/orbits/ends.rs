@@ -1,6 +1,7 @@
 //! Where branches of orbits begin and end, so that none is followed from both ends, and what is told of one way backwards.
 
-use super::{GeneralBranch, GeneralEvent, SAME};
+use super::chart::Chart;
+use crate::bifurcation::general::{GeneralEvent, GeneralSystem, SAME};
 use crate::error::Result;
 use crate::field::Vector;
 use crate::orbit::{ContinuationPoint, ranges};
@@ -14,14 +15,19 @@ pub(super) struct End {
 }
 
 impl End {
-    /// Of an orbit of the branch.
+    /// Of an orbit in these variables.
     ///
     /// # Errors
     /// Those of the flow along it.
-    pub fn of(branch: &GeneralBranch<'_>, site: &ContinuationPoint) -> Result<Self> {
-        let ranges = ranges(&branch.system.family.field(site.at), &site.shooting)?;
+    pub fn of(
+        system: &GeneralSystem<'_>,
+        chart: Chart<'_>,
+        site: &ContinuationPoint,
+    ) -> Result<Self> {
+        let site = chart.in_whole(site);
+        let ranges = ranges(&chart.whole_family().field(site.at), &site.shooting)?;
         let (least, greatest): (Vec<f64>, Vec<f64>) = ranges.into_iter().unzip();
-        let representative = |numbers| branch.system.representative(&Vector::from_vec(numbers));
+        let representative = |numbers| system.representative(&Vector::from_vec(numbers));
         Ok(End {
             coordinate: site.at[0],
             log_period: site.shooting.period().ln(),

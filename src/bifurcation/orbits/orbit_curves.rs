@@ -1,17 +1,19 @@
 //! Curves of bifurcations of periodic orbits in the plane of two parameters, with their resonances.
 
-use super::curves::{equilibrium_curves, in_order, looked_along, scanned};
-use super::orbit_point::{orbit_point, special_orbit, sum_of_pair};
-use super::orbits::{new_corrector, orbits};
-use super::{
+use super::branches::{LONGEST, ROUGH, new_corrector, orbits};
+use super::chart::{Chart, embedded, middle};
+use super::cubic_coefficient::{CoefficientCurve, Decided};
+use super::normal_form::{Form, normal_form};
+use super::orbit_point::{orbit_point, pass, special_orbit, sum_of_pair};
+use crate::bifurcation::equilibria::generic_curve::EquilibriumBifurcation;
+use crate::bifurcation::general::curves::{equilibrium_curves, in_order, looked_along, scanned};
+use crate::bifurcation::general::{
     GeneralBranch, GeneralCurve, GeneralEvent, GeneralFollowing, GeneralObserver, GeneralPoint,
     GeneralSolution, SAME, Teller,
 };
-use crate::bifurcation::equilibria::generic_curve::EquilibriumBifurcation;
-use crate::bifurcation::orbits::normal_form::{Form, normal_form};
-use crate::bifurcation::orbits::{CoefficientCurve, Decided, LONGEST, embedded, middle};
 use crate::bifurcation::{Criticality, Label};
 use crate::continuation::{Met, Stop};
+use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::field::Vector;
 use crate::number::Uncertain;
@@ -89,18 +91,20 @@ struct OrbitCurves<'c, 'a> {
     degenerate: OnceCell<Vec<GeneralPoint>>,
 }
 
-fn pass(site: &ContinuationPoint) -> [f64; 3] {
-    [site.at[0], site.at[1], site.shooting.period().ln()]
-}
-
 impl<'a> OrbitCurves<'_, 'a> {
-    /// The fields in which the curve is followed: of pitchforks those of states in which both parts move alike.
+    /// The variables in which the curve is followed: of pitchforks those of states in which both parts move alike.
+    fn chart(&self) -> Chart<'a> {
+        Chart::of(
+            &self.curve.system,
+            match self.test_function {
+                TestFunction::Transverse => Symmetry::Symmetric,
+                _ => Symmetry::Asymmetric,
+            },
+        )
+    }
+
     fn family(&self) -> &'a dyn ParametrisedField {
-        let system = self.curve.system;
-        let alike = system
-            .alike
-            .filter(|_| self.test_function == TestFunction::Transverse);
-        alike.unwrap_or(system.family)
+        self.chart().family()
     }
 
     /// The bifurcations along a coordinate at a value of the other one.
@@ -132,6 +136,9 @@ impl<'a> OrbitCurves<'_, 'a> {
                     let site = ContinuationPoint { shooting, at };
                     found.push(match self.test_function {
                         TestFunction::Transverse => middle(&site),
+                        _ if site.shooting.dimension() < self.family().dimension() => {
+                            embedded(&site)
+                        }
                         _ => site,
                     });
                 }
@@ -209,7 +216,7 @@ impl<'a> OrbitCurves<'_, 'a> {
         };
         let meets = [WatchedFunction::TestFunction(self.test_function), watch];
         let special = (number, Label::Uz);
-        let (point, orbit) = special_orbit(self.family(), special, here, (&[0, 1], &meets));
+        let (point, orbit) = special_orbit(self.chart(), special, here, (&[0, 1], &meets));
         let orbit = orbit.as_ref().unwrap_or(here);
         (self.classified(self.angled(point, orbit), orbit), true)
     }
@@ -277,11 +284,7 @@ impl<'a> OrbitCurves<'_, 'a> {
                 if let Some(zero) = zero {
                     seen(zero, true)?;
                 }
-                let point = match way {
-                    Some(way) => point.classified(way),
-                    None => point,
-                };
-                seen(point, false)?;
+                seen(point.classified(way), false)?;
                 let extents = now.here.site.shooting.extents();
                 largest = largest.sup(&extents);
                 if (0..largest.len()).all(|i| extents[i] < SHRUNK * largest[i])
@@ -414,9 +417,9 @@ impl<'a> OrbitCurves<'_, 'a> {
             WatchedFunction::Turn(_) => return Continue(()),
         };
         let meets = [WatchedFunction::TestFunction(self.test_function), watch];
-        let family = self.family();
+        let chart = self.chart();
         let settings = &palc.curve.settings;
-        let (point, orbit) = special_orbit(family, (number, label), near, (&settings.free, &meets));
+        let (point, orbit) = special_orbit(chart, (number, label), near, (&settings.free, &meets));
         let orbit = orbit.as_ref().unwrap_or(near);
         let point = self.classified(self.angled(point, orbit), orbit);
         seen(point, true)?;
@@ -426,8 +429,8 @@ impl<'a> OrbitCurves<'_, 'a> {
     fn row(&self, number: usize, orbit: &Regular, label: Option<Label>) -> GeneralPoint {
         /// The last correction was made; with old gradients a small part of it is left.
         const LEFT: f64 = 0.05;
-        let off = LEFT * orbit.residual + 100.0 * crate::bifurcation::orbits::ROUGH;
-        let point = self.angled(orbit_point(number, orbit, label), orbit);
+        let off = LEFT * orbit.residual + 100.0 * ROUGH;
+        let point = self.angled(orbit_point(self.chart(), number, orbit, label), orbit);
         let point = point.placed(self.family(), [off; 2]);
         let period = orbit.site.shooting.period();
         GeneralPoint {
@@ -446,10 +449,7 @@ impl<'a> OrbitCurves<'_, 'a> {
     }
 
     fn classified(&self, point: GeneralPoint, orbit: &Regular) -> GeneralPoint {
-        match self.way(&orbit.site) {
-            Some(way) => point.classified(way),
-            None => point,
-        }
+        point.classified(self.way(&orbit.site))
     }
 
     /// The cubic coefficient of an orbit of the curve, and which way that is; folds have none.
@@ -508,7 +508,7 @@ impl<'a> OrbitCurves<'_, 'a> {
             parameters: zero.at,
             period: Some(zero.period),
             note: zero.note,
-            ..orbit_point(number, &zero.orbit, Some(zero.label))
+            ..orbit_point(self.chart(), number, &zero.orbit, Some(zero.label))
         };
         Some(self.angled(point, &zero.orbit))
     }

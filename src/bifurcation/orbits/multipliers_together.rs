@@ -4,11 +4,12 @@
 //! outside the unit circle are compared from orbit to orbit; where no test function tells why they differ, the multiplier that is the next to leave
 //! it is followed to modulus 1.
 
+use super::branches::new_corrector;
+use super::chart::Chart;
 use super::orbit_point::orbit_point;
-use super::orbits::new_corrector;
-use super::{FREE, GeneralPoint};
+use super::refine::refined;
 use crate::bifurcation::Label;
-use crate::bifurcation::orbits::refined;
+use crate::bifurcation::general::{FREE, GeneralPoint};
 use crate::number::Uncertain;
 use crate::orbit::{
     Condition, ContinuationPoint, Goal, ParametrisedField, Regular, TestFunction, WatchedFunction,
@@ -48,7 +49,7 @@ pub(super) struct Together {
 
 impl Together {
     /// As a special point of a branch.
-    pub fn point(self, number: usize, family: &dyn ParametrisedField) -> GeneralPoint {
+    pub fn point(self, number: usize, chart: Chart<'_>) -> GeneralPoint {
         let Together {
             orbit,
             at,
@@ -60,7 +61,7 @@ impl Together {
             Label::Pd => "that are -1",
             _ => "of modulus 1",
         };
-        let point = orbit_point(number, &orbit, Some(label));
+        let point = orbit_point(chart, number, &orbit, Some(label));
         let point = GeneralPoint {
             at: [at.value, point.at[1]],
             note: Some(format!(
@@ -68,7 +69,7 @@ impl Together {
             )),
             ..point
         };
-        point.placed(family, [at.uncertainty, 0.0])
+        point.placed(chart.family(), [at.uncertainty, 0.0])
     }
 }
 

@@ -6,15 +6,15 @@
 //! on the limit, by one law or the other. Beside a saddle-focus whose complex eigenvalues are the nearest to the axis the parameter goes to and fro about its limit,
 //! ever less (Glendinning & Sparrow 1984, J. Stat. Phys. 35, 645): then it is between where the last two turns are. Else nothing is said.
 
-use super::equilibria::{EquilibriumBranches, Reported};
-use super::{FREE, GeneralBranch, GeneralPoint};
+use super::branches::{ARC, ROUGH, WORK};
 use crate::bifurcation::Label;
 use crate::bifurcation::equilibria::generic::FieldEquilibria;
-use crate::bifurcation::orbits::{ARC, ROUGH, WORK};
+use crate::bifurcation::general::equilibria::{EquilibriumBranches, Reported};
+use crate::bifurcation::general::{FREE, GeneralBranch, GeneralPoint};
 use crate::field::Vector;
 use crate::integrate::{AnyField, AnyStep, Control};
 use crate::number::{Uncertain, eigenvalues};
-use crate::orbit::{Regular, ShootingNodes, Tracer, method_for};
+use crate::orbit::{ContinuationPoint, ShootingNodes, Tracer, method_for};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 use std::ops::ControlFlow::Continue;
@@ -259,11 +259,11 @@ fn extrapolated(
 pub(super) struct Saddle(Vec<Complex<f64>>);
 
 impl Saddle {
-    /// The saddle where an orbit is slowest; `None` where no equilibrium is there, or one that is no saddle.
-    pub fn passed(branch: &GeneralBranch<'_>, orbit: &Regular) -> Option<Self> {
-        let field = branch.system.family.field(orbit.site.at);
-        let passage = Passage::of(&field, &orbit.site.shooting)?;
-        let saddle = passage.equilibrium(branch, orbit.site.at[FREE])?;
+    /// The saddle where an orbit among all states is slowest; `None` where no equilibrium is there, or one that is no saddle.
+    pub fn passed(branch: &GeneralBranch<'_>, orbit: &ContinuationPoint) -> Option<Self> {
+        let field = branch.system.family.field(orbit.at);
+        let passage = Passage::of(&field, &orbit.shooting)?;
+        let saddle = passage.equilibrium(branch, orbit.at[FREE])?;
         let found = eigenvalues(&field.jacobian(&saddle))?;
         let both_signs = found.iter().any(|z| z.re > 0.0) && found.iter().any(|z| z.re < 0.0);
         both_signs.then_some(Saddle(found))

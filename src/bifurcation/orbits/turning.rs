@@ -1,6 +1,6 @@
 //! Distinguishes folds from pitchforks on a step along a branch of orbits: at a fold the parameter turns, at a pitchfork it does not.
 
-use super::FREE;
+use crate::bifurcation::general::FREE;
 use crate::orbit::DirectedPoint;
 
 /// Slopes of the parameter along the branch below this are rounding. Along a canard the parameter turns with such slopes.

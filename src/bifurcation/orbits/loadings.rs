@@ -1,0 +1,267 @@
+//! One or two equal interfaces in V_H and K: their branches of orbits are those of any system, with a symmetry and with Hopf points that are known
+//! from closed forms.
+
+use super::branches::{HopfBeginning, orbits};
+use crate::bifurcation::general::{
+    Exchanged, GeneralBranch, GeneralEvent, GeneralFollowing, GeneralPoint, GeneralSolution,
+    GeneralSystem, in_order,
+};
+use crate::bifurcation::{
+    BranchRequest, BranchRow, Event, EventObserver, Label, Parameter, Special, equilibria,
+};
+use crate::equilibrium::{Equilibrium, Solver, Symmetry, steady_states};
+use crate::error::{Error, Result};
+use crate::field::Vector;
+use crate::number::{Uncertain, eigenvalues};
+use crate::orbit::{
+    HopfPoint, InterfaceSystem, OverDifferenceChart, OverLoadings, ParametrisedField, Profile,
+    ShootingNodes, hopf_points, profile,
+};
+use std::ops::ControlFlow::Break;
+
+/// How far from the range, in logarithms, a branch may lead that begins beside it.
+const BEYOND: f64 = 2.0;
+
+/// Follows the branches that are asked for and hands on what is found: from the Hopf points of symmetric equilibria, of
+/// asymmetric ones, from pitchforks of orbits that none of these has come to, and from period doublings.
+///
+/// # Errors
+/// Those of [`BranchRequest::checked`], of the equilibria and of the flow; [`Error::TooManyPoints`](crate::Error::TooManyPoints);
+/// that a branch ends early is none.
+pub fn branch(request: &BranchRequest, seen: EventObserver<'_>) -> Result<()> {
+    request.checked()?;
+    let (slab, along) = (&request.slab, request.along);
+    let (from, to) = (request.range.0.ln(), request.range.1.ln());
+    let range = (from.min(to), from.max(to));
+    let loading = in_order(
+        along.place(),
+        [slab.loading.driving, slab.loading.stiffness],
+    );
+    let hopfs = |symmetry| hopf_beginnings(slab, along, symmetry);
+    let mut failed = None;
+    with_system(slab, along, |system| {
+        let branch = GeneralBranch {
+            system: *system,
+            range,
+            beyond: (range.0 - BEYOND, range.1 + BEYOND),
+            held: loading[1].ln(),
+            at: request.at.iter().map(|x| x.ln()).collect(),
+            orbit: None,
+            found: None,
+            hopfs: Some(&hopfs),
+            symmetry: request.symmetry,
+            doublings: request.doublings,
+            within: None,
+            following: GeneralFollowing {
+                step: request.step,
+                skip: request.skip.clone(),
+                max_points: request.max_points,
+            },
+        };
+        orbits(&branch, &mut |event| match request.event(event) {
+            Ok(event) => seen(event),
+            Err(error) => {
+                failed = Some(error);
+                Break(())
+            }
+        })
+    })?;
+    failed.map_or(Ok(()), Err)
+}
+
+/// Does something with a slab over the logarithms of V_H and K, of which the one that varies is the first.
+fn with_system<R>(
+    slab: &InterfaceSystem,
+    along: Parameter,
+    then: impl FnOnce(&GeneralSystem<'_>) -> R,
+) -> R {
+    let alike = OverLoadings::new(*slab, Symmetry::Symmetric);
+    let asymmetric = OverLoadings::new(*slab, Symmetry::Asymmetric);
+    let difference = OverDifferenceChart(asymmetric);
+    let whole = whole(slab);
+    let exchanged = (Exchanged(&whole), Exchanged(&alike), Exchanged(&difference));
+    let (family, alike, difference): (
+        &dyn ParametrisedField,
+        &dyn ParametrisedField,
+        &dyn ParametrisedField,
+    ) = match along.place() {
+        0 => (&whole, &alike, &difference),
+        _ => (&exchanged.0, &exchanged.1, &exchanged.2),
+    };
+    let both = slab.interfaces == 2;
+    let interchangeable = match both {
+        true => vec![vec![1, 2]],
+        false => Vec::new(),
+    };
+    let known = |at: [f64; 2]| {
+        let [log_driving, _] = in_order(along.place(), at);
+        let driving = log_driving.exp();
+        let states = steady_states(&slab.law, driving, slab.interfaces, Solver::Newton)?;
+        let state = |one: &Equilibrium| state(slab, one);
+        Ok(states.equilibria.iter().map(state).collect())
+    };
+    then(&GeneralSystem {
+        family,
+        alike: Some(alike),
+        difference: both.then_some(difference),
+        interchangeable: &interchangeable,
+        names: in_order(along.place(), ["driving", "stiffness"]),
+        equilibria: &known,
+        bounds: &[],
+    })
+}
+
+/// All states of a slab: of a single interface those in which all of them move alike.
+fn whole(slab: &InterfaceSystem) -> OverLoadings {
+    let symmetry = match slab.interfaces {
+        1 => Symmetry::Symmetric,
+        _ => Symmetry::Asymmetric,
+    };
+    OverLoadings::new(*slab, symmetry)
+}
+
+/// An equilibrium among all states.
+fn state(slab: &InterfaceSystem, equilibrium: &Equilibrium) -> Vector {
+    let logs = equilibrium.log_state.iter().take(slab.interfaces);
+    let all = std::iter::once(equilibrium.stress.value).chain(logs.copied());
+    Vector::from_vec(all.collect())
+}
+
+/// The Hopf points of equilibria of a symmetry, by their coordinate.
+fn hopf_beginnings(
+    slab: &InterfaceSystem,
+    along: Parameter,
+    symmetry: Symmetry,
+) -> Result<Vec<HopfBeginning>> {
+    let place = along.place();
+    let mut hopfs = hopf_points(slab, symmetry, along)?;
+    hopfs.sort_by(|a, b| a.at()[place].total_cmp(&b.at()[place]));
+    let beginning = |hopf: HopfPoint| {
+        let mut small = hopf.small_orbits(&OverLoadings::new(*slab, symmetry));
+        let state = state(slab, &hopf.equilibrium);
+        let jacobian = whole(slab).field(small.at).jacobian(&state);
+        small.at = in_order(place, small.at);
+        let unknown = |x: f64| Uncertain::new(x, f64::INFINITY);
+        let known = equilibria::hopf(&slab.law, along, &hopf);
+        let known = known.unwrap_or_else(|| Special {
+            period: Some(unknown(std::f64::consts::TAU / hopf.frequency)),
+            ..Special::new(Label::Hb, unknown(hopf.driving), unknown(hopf.stiffness))
+        });
+        let solution = GeneralSolution::Equilibrium {
+            state,
+            eigenvalues: eigenvalues(&jacobian).unwrap_or_default(),
+        };
+        let point = GeneralPoint {
+            label: Some(known.label),
+            parameters: in_order(place, [known.driving, known.stiffness]),
+            period: known.period,
+            criticality: known.criticality,
+            coefficient: known.coefficient,
+            coefficient_uncertainty: known.coefficient_uncertainty,
+            note: known.note,
+            ..GeneralPoint::new(0, small.at, solution)
+        };
+        (small, point)
+    };
+    Ok(hopfs.into_iter().map(beginning).collect())
+}
+
+impl BranchRequest {
+    /// What is found, in V_H and K.
+    fn event(&self, event: GeneralEvent) -> Result<Event> {
+        let point = match event {
+            GeneralEvent::Special(point) => {
+                return Ok(Event::Special(self.special(point).against(self.tolerance)));
+            }
+            GeneralEvent::Row(point) => point,
+        };
+        let GeneralSolution::Orbit {
+            shooting,
+            log_multipliers,
+            ..
+        } = &point.solution
+        else {
+            return Err(Error::Input(
+                "a branch of orbits has equilibria among its rows".into(),
+            ));
+        };
+        Ok(Event::Branch(self.row(
+            &point,
+            shooting,
+            log_multipliers,
+        )?))
+    }
+
+    /// V_H and K of a point as they were given, where they were: not the exponentials of their logarithms.
+    fn given(&self, point: &GeneralPoint) -> [Option<f64>; 2] {
+        let (from, to) = self.range;
+        let mut asked = [from, to].into_iter().chain(self.at.iter().copied());
+        let free = asked.find(|x| x.ln() == point.at[0]);
+        let mut given = [self.slab.loading.driving, self.slab.loading.stiffness].map(Some);
+        given[self.along.place()] = free;
+        given
+    }
+
+    fn row(
+        &self,
+        point: &GeneralPoint,
+        shooting: &ShootingNodes,
+        log_multipliers: &[f64],
+    ) -> Result<BranchRow> {
+        let whole = whole(&self.slab);
+        let here = whole.slab(in_order(self.along.place(), point.at));
+        let Profile {
+            mean_stress,
+            stress_range,
+            state,
+            slip_rate,
+        } = profile(&here, shooting)?;
+        let [driving, stiffness] = self.given(point);
+        Ok(BranchRow {
+            branch: point.number,
+            symmetry: point.symmetry.unwrap_or(Symmetry::Symmetric),
+            driving: driving.unwrap_or(here.loading.driving),
+            stiffness: stiffness.unwrap_or(here.loading.stiffness),
+            stress: mean_stress,
+            stress_range,
+            period: Some(shooting.period()),
+            state,
+            slip_rate,
+            ln_abs_multiplier: [0, 1].map(|i| log_multipliers.get(i).copied()),
+            verdict: point.verdict(),
+            label: point.label,
+        })
+    }
+
+    fn special(&self, point: GeneralPoint) -> Special {
+        let is_orbit = matches!(point.solution, GeneralSolution::Orbit { .. });
+        let given = match is_orbit {
+            true => self.given(&point),
+            // The closed forms know what is exact.
+            false => [None; 2],
+        };
+        let place = self.along.place();
+        let [driving, stiffness] = in_order(place, point.parameters);
+        let exactly =
+            |x: Uncertain, given: Option<f64>| given.map_or(x, |given| Uncertain::new(given, 0.0));
+        let [given_driving, given_stiffness] = given;
+        Special {
+            branch: point.number,
+            symmetry: point.symmetry,
+            period: point.period,
+            criticality: point.criticality,
+            coefficient: point.coefficient,
+            coefficient_uncertainty: point.coefficient_uncertainty,
+            note: point.note,
+            orbit: point.orbit.map(|orbit| match place {
+                0 => orbit,
+                _ => orbit.exchanged(),
+            }),
+            ..Special::new(
+                point.label.unwrap_or(Label::Mx),
+                exactly(driving, given_driving),
+                exactly(stiffness, given_stiffness),
+            )
+        }
+    }
+}
