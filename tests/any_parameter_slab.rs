@@ -350,3 +350,49 @@ fn what_interfaces_do_not_have_is_refused_in_one_sentence() {
         "does not vary in the plane",
     );
 }
+
+/// Branches of asymmetric orbits begin at the pitchforks of symmetric ones along any parameter, and pitchforks are known in their last digits.
+#[test]
+fn orbits_part_from_symmetry_along_any_parameter() {
+    let made =
+        object("branch orbits --along damping --driving 1 --stiffness 0.12 --from 1e-4 --to 1e-1");
+    let pitchforks = special(&made, "PF");
+    assert_eq!(pitchforks.len(), 1, "{pitchforks:?}");
+    let [at, off] =
+        ["value", "uncertainty"].map(|part| number(pitchforks[0], &format!("/damping/{part}")));
+    assert!(off < 1e-11 * at, "{at} +- {off}");
+    assert_eq!(pitchforks[0]["criticality"], "subcritical");
+    assert_eq!(pitchforks[0]["symmetry"], "symmetric");
+    // The unstable asymmetric orbits lie below it.
+    let rows = made["result"]["rows"].as_array().expect("rows");
+    let parted = rows
+        .iter()
+        .filter(|row| row["symmetry"] == "asymmetric" && row["verdict"] == "unstable");
+    let parted: Vec<f64> = parted.map(|row| number(row, "/damping")).collect();
+    assert!(parted.len() > 3, "{}", parted.len());
+    assert!(parted.iter().all(|x| *x < at));
+    assert!(parted.iter().any(|x| *x > 0.9 * at));
+}
+
+/// The largest K of a curve of folds of orbits, also of interfaces that differ: of those that differ by nothing it is that of equal ones.
+#[test]
+fn curves_of_orbits_of_interfaces_that_differ_have_tops() {
+    let ranges = "--driving-range 0.05:1 --stiffness-range 0.15:0.3";
+    let of = |set: &str| {
+        let made = object(&format!("locus torus {set} {ranges}"));
+        let tops: Vec<[f64; 2]> = special(&made, "TOP")
+            .into_iter()
+            .map(|one| ["driving", "stiffness"].map(|name| number(one, &format!("/{name}/value"))))
+            .collect();
+        tops
+    };
+    let equal = of("");
+    assert_eq!(equal.len(), 1, "{equal:?}");
+    let differ = of("--set residual_strength_2=0.001000001");
+    assert!(!differ.is_empty());
+    for top in &differ {
+        for (a, b) in top.iter().zip(&equal[0]) {
+            assert!((a / b - 1.0).abs() < 1e-4, "{differ:?} {equal:?}");
+        }
+    }
+}

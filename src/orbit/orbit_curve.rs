@@ -10,7 +10,6 @@ use super::test_function::TestFunction;
 use super::winding::{Turns, quarter_turn};
 use crate::continuation::{self, Continuation, CurveStep, SolutionCurve, StepControl, Stop};
 use crate::error::{Error, Result};
-use crate::model::STIFFNESS;
 use std::sync::Arc as Shared;
 
 /// Where a continuation stands.
@@ -351,7 +350,7 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
 
     /// Along a curve of bifurcations a turn has no condition of its own.
     fn solves(&self, watch: WatchedFunction) -> bool {
-        watch != WatchedFunction::Turn(STIFFNESS) || self.settings.test_function.is_none()
+        !matches!(watch, WatchedFunction::Turn(_)) || self.settings.test_function.is_none()
     }
 
     fn solve(

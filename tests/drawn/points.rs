@@ -29,14 +29,19 @@ fn names_of_a_crowd_are_counted_at_one_place() {
 #[test]
 fn branches_of_orbits_are_drawn_to_their_hopf_points() {
     let file = crate::command::folder("drawn-to-hopf").join("branch.svg");
-    let ended = crate::command::twinslip(&format!(
-        "branch orbits --system fitzhugh-nagumo --along I --from 0.1 --to 1.6 -q --plot {}",
-        file.display()
-    ));
-    assert_eq!(ended.code, 0, "{}", ended.err);
-    let svg = std::fs::read_to_string(&file).expect("a picture");
-    // Both in every panel, and in the legend.
-    assert!(svg.matches("HB").count() >= 5, "{svg}");
+    for what in [
+        "--system fitzhugh-nagumo --along I --from 0.1 --to 1.6",
+        "--stiffness 0.14 --from 0.05 --to 300",
+    ] {
+        let ended = crate::command::twinslip(&format!(
+            "branch orbits {what} -q --force --plot {}",
+            file.display()
+        ));
+        assert_eq!(ended.code, 0, "{}", ended.err);
+        let svg = std::fs::read_to_string(&file).expect("a picture");
+        // Both in every panel, and in the legend.
+        assert!(svg.matches("HB").count() >= 5, "{what}");
+    }
 }
 
 #[test]

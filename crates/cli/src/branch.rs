@@ -51,6 +51,6 @@ pub fn run(options: &BranchOptions, call: &Call) -> Result<Ending> {
     branches.follow(
         views::branch_columns(plan.of == BranchKind::Orbits, plan.system.interfaces),
         |known, seen| plan.follow(known, seen),
-        |rows: &[BranchRow], _| views::branches(rows, along, slab, &plan.system),
+        |rows: &[BranchRow], special| views::branches(rows, special, along, slab, &plan.system),
     )
 }

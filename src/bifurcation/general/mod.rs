@@ -9,20 +9,19 @@ mod multiple;
 mod runaway;
 pub(super) mod splits;
 
-pub use super::orbits::{HopfBeginning, orbit_curves, orbits};
+pub use super::orbits::{HopfBeginning, OrbitSeeds, orbit_curves, orbits};
 pub use curves::equilibrium_curves;
 pub(super) use curves::{Exchanged, in_order};
 pub use equilibria::equilibria;
 pub use splits::WithinClusters;
 
-use super::orbits::{SpecialOrbit, second};
+use super::orbits::SpecialOrbit;
 use super::{Criticality, Label, less_accurate};
 use crate::bifurcation::equilibria::generic_crossing::BranchCrossing;
 use crate::bifurcation::equilibria::generic_curve::EquilibriumBifurcation;
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::{Error, Result};
 use crate::field::Vector;
-use crate::integrate::Choice;
 use crate::number::Uncertain;
 use crate::orbit::{
     ContinuationPoint, ParametrisedField, ShootingNodes, TestFunction, WithinCluster,
@@ -122,10 +121,25 @@ pub struct GeneralCurve<'a> {
     pub at: [Vec<f64>; 2],
     /// An orbit with its coordinates, where one is known.
     pub orbit: Option<ContinuationPoint>,
-    /// Whether the way is told that bifurcations of orbits go.
-    pub criticality: bool,
+    /// Where curves of orbits begin, where that is known otherwise than from branches of orbits.
+    pub seeds: Option<&'a dyn OrbitSeeds>,
+    /// Of two equal parts: orbits of one symmetry, or of both.
+    pub symmetry: Option<Symmetry>,
+    /// Where the way is told that bifurcations of orbits go.
+    pub criticality: Classified,
     /// How it is followed.
     pub following: GeneralFollowing,
+}
+
+/// The points of a curve at which the way is told that a bifurcation of orbits goes: a normal form takes as long as some points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Classified {
+    /// None.
+    Never,
+    /// Special points.
+    Special,
+    /// All.
+    Every,
 }
 
 /// How branches and curves are followed.
@@ -272,18 +286,6 @@ impl GeneralSystem<'_> {
         });
         let met = pairs.filter(|&(i, j)| equal(here, i, j) && !equal(from, i, j));
         met.count() == 1
-    }
-
-    /// The parameters and the period of a special orbit once more, by an unlike method. That begins from the first one's nodes, cut
-    /// to a few digits, and shares nothing else with it.
-    ///
-    /// # Errors
-    /// [`Error::NotConverged`] where the second method does not find the orbit; those of the method.
-    pub fn crosscheck(&self, orbit: &SpecialOrbit, method: Choice) -> Result<[f64; 3]> {
-        let (nodes, _) = orbit.nodes();
-        let dimension = nodes.first().map_or(0, Vec::len);
-        let alike = self.alike.filter(|alike| alike.dimension() == dimension);
-        second(alike.unwrap_or(self.family), orbit, method)
     }
 }
 

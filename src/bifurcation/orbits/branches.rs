@@ -1,22 +1,22 @@
 //! Branches of periodic orbits along one parameter: from the Hopf points, through folds, onto the branches that part from symmetric ones and those of
 //! doubled periods.
 
-use super::chart::{Chart, middle};
+use super::chart::Chart;
 use super::ends::{End, backwards};
+use super::hopf::{HopfBeginning, hopfs_on_equilibria, of_symmetry};
 use super::orbit_branch::OrbitBranch;
 use super::orbit_point::{orbit_point, sharper};
 use crate::bifurcation::Label;
-use crate::bifurcation::general::equilibria::EquilibriumBranches;
 use crate::bifurcation::general::splits::with_splits;
 use crate::bifurcation::general::{
-    FREE, FoundOrbits, GeneralBranch, GeneralEvent, GeneralObserver, GeneralPoint, GeneralSolution,
-    GeneralSystem, SAME, Teller, symmetry_of,
+    FREE, FoundOrbits, GeneralBranch, GeneralEvent, GeneralObserver, GeneralPoint, SAME, Teller,
+    symmetry_of,
 };
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::Result;
 use crate::orbit::{
     Condition, ContinuationPoint, Corrector, Goal, Palc, PalcSettings, ParametrisedField, Regular,
-    SmallOrbits, Switch,
+    Switch,
 };
 use std::ops::ControlFlow::Continue;
 
@@ -31,9 +31,6 @@ pub(super) const ARC: usize = 100_000;
 const ASIDE: f64 = 0.02;
 /// What is said of an orbit that was found where no Hopf point is met.
 const BEGUN: &str = "begins here, at an orbit that was found: no Hopf point is met";
-
-/// A Hopf point with the small orbits beside it.
-pub type HopfBeginning = (SmallOrbits, GeneralPoint);
 
 /// Follows the branches of orbits over the range and hands on what is found: of two equal parts first those of symmetric orbits, then those of
 /// asymmetric ones, from Hopf points and from the pitchforks of orbits that none of these has come to.
@@ -51,57 +48,6 @@ pub fn orbits(branch: &GeneralBranch<'_>, seen: GeneralObserver<'_>) -> Result<(
 /// What makes the orbits of a family, its work bounded.
 pub(super) fn new_corrector(family: &dyn ParametrisedField) -> Result<Corrector<'_>> {
     Corrector::within(family, ROUGH, (ARC, WORK))
-}
-
-/// The Hopf points on all equilibria, by their coordinate, each once; as they are told of.
-fn hopf_points(branch: &GeneralBranch<'_>) -> Result<Vec<HopfBeginning>> {
-    let mut found: Vec<HopfBeginning> = Vec::new();
-    EquilibriumBranches::new(branch).all(&mut |point, _| {
-        if let (Some(Label::Hb), Some(period)) = (point.label, point.period)
-            && let GeneralSolution::Equilibrium { state, .. } = &point.solution
-        {
-            let frequency = std::f64::consts::TAU / period.value;
-            let field = branch.system.family.field(point.at);
-            let hopf = SmallOrbits::of(&field, state.clone(), point.at, frequency);
-            let place = |hopf: &SmallOrbits| branch.system.representative(&hopf.state);
-            let here = place(&hopf);
-            let same = |other: &SmallOrbits| {
-                (other.frequency / hopf.frequency - 1.0).abs() < SAME
-                    && (other.at[FREE] - hopf.at[FREE]).abs() < SAME
-                    && (place(other) - &here).amax() < SAME * (1.0 + here.amax())
-            };
-            if !found.iter().any(|(other, _)| same(other)) {
-                found.push((hopf, point));
-            }
-        }
-        Continue(())
-    })?;
-    found.sort_by(|a, b| a.0.at[FREE].total_cmp(&b.0.at[FREE]));
-    Ok(found)
-}
-
-/// Those of them at equilibria of this symmetry, with small orbits in the variables of that.
-fn of_symmetry(
-    system: &GeneralSystem<'_>,
-    all: &[HopfBeginning],
-    symmetry: Symmetry,
-) -> Vec<HopfBeginning> {
-    let chart = Chart::of(system, symmetry);
-    let own = all
-        .iter()
-        .filter(|(_, point)| point.solution.symmetry() == symmetry);
-    let in_chart = |(hopf, point): &HopfBeginning| {
-        let small = match symmetry {
-            Symmetry::Symmetric => {
-                let state = hopf.state.rows(0, chart.family().dimension()).into_owned();
-                let field = chart.family().field(hopf.at);
-                SmallOrbits::of(&field, state, hopf.at, hopf.frequency)
-            }
-            Symmetry::Asymmetric => hopf.clone(),
-        };
-        (small, point.clone())
-    };
-    own.map(in_chart).collect()
 }
 
 /// A period doubling.
@@ -151,7 +97,7 @@ impl<'b, 'a> OrbitBranches<'b, 'a> {
         let system = self.branch.system;
         let found = match self.branch.hopfs {
             Some(_) => Vec::new(),
-            None => self.hopfs_on_equilibria()?,
+            None => hopfs_on_equilibria(self.branch)?,
         };
         if let Some(site) = &self.branch.orbit {
             self.along_orbit(site.clone(), None, teller)?;
@@ -181,20 +127,6 @@ impl<'b, 'a> OrbitBranches<'b, 'a> {
             self.along_found(found, teller)?;
         }
         self.from_doublings(teller)
-    }
-
-    fn hopfs_on_equilibria(&self) -> Result<Vec<HopfBeginning>> {
-        let branch = self.branch;
-        let hopfs = hopf_points(branch)?;
-        if !hopfs.is_empty() || branch.orbit.is_some() {
-            return Ok(hopfs);
-        }
-        // What is not known there is no reason to fail: it was not asked for.
-        let beyond = hopf_points(&GeneralBranch {
-            range: branch.beyond,
-            ..branch.clone()
-        });
-        Ok(beyond.unwrap_or_default())
     }
 
     fn settings(&self) -> PalcSettings {
@@ -251,12 +183,8 @@ impl<'b, 'a> OrbitBranches<'b, 'a> {
     ) -> Result<()> {
         let system = self.branch.system;
         let symmetry = symmetry_of(&site.shooting);
-        let (chart, site) = match symmetry {
-            Symmetry::Symmetric if system.alike.is_some() => {
-                (Chart::of(&system, symmetry), middle(&site))
-            }
-            _ => (Chart::whole(&system), site),
-        };
+        let chart = Chart::of(&system, symmetry);
+        let site = chart.from_any(&site);
         let mut corrector = new_corrector(chart.family())?;
         let held = [Condition::Parameter(FREE, site.at[FREE])];
         let orbit = corrector.correct(site, &[FREE], &held, Goal::STEP)?;

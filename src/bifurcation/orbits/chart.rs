@@ -187,6 +187,14 @@ impl<'a> Chart<'a> {
         (chart, middle(&self.usual(site)))
     }
 
+    /// An orbit of its symmetry, in the variables of all states or in those of states in which both parts move alike, in its own.
+    pub fn from_any(&self, site: &ContinuationPoint) -> ContinuationPoint {
+        match self.variables {
+            Variables::Alike => middle(site),
+            _ => site.clone(),
+        }
+    }
+
     /// The cubic coefficient of an orbit that bifurcates, in the space of all states, and which way that is; `None` for orbits that do not have the form.
     pub fn normal_form(
         &self,
@@ -208,7 +216,7 @@ fn asymmetry(site: &ContinuationPoint) -> f64 {
 }
 
 /// The symmetric orbit in the middle of one of all states; a symmetric one is its own.
-pub(super) fn middle(site: &ContinuationPoint) -> ContinuationPoint {
+fn middle(site: &ContinuationPoint) -> ContinuationPoint {
     let nodes = site.shooting.nodes.iter();
     let node = |x: &Vector| {
         let state = [x[0], 0.5 * (x[1] + x[x.len() - 1])];
@@ -218,7 +226,7 @@ pub(super) fn middle(site: &ContinuationPoint) -> ContinuationPoint {
 }
 
 /// A symmetric orbit among all states.
-pub(super) fn embedded(site: &ContinuationPoint) -> ContinuationPoint {
+fn embedded(site: &ContinuationPoint) -> ContinuationPoint {
     let nodes = site.shooting.nodes.iter();
     let node = |x: &Vector| Vector::from_column_slice(&[x[0], x[1], x[1]]);
     site.with_nodes(nodes.map(node).collect())

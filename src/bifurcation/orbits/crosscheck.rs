@@ -3,16 +3,16 @@
 //! Pitchforks of orbits are found in another formulation too. Tops and zeros of cubic coefficients have no condition of their
 //! own, and no second method here.
 
+use super::loadings::with_system;
 use super::refine::SpecialOrbit;
-use crate::bifurcation::Special;
-use crate::equilibrium::Symmetry;
+use crate::bifurcation::general::GeneralSystem;
+use crate::bifurcation::{Parameter, Special};
 use crate::error::{Error, Result};
 use crate::field::Vector;
 use crate::integrate::{Choice, MAX_STEPS, Tolerances};
 use crate::orbit::{
-    Condition, ContinuationPoint, Corrector, Goal, InterfaceSystem, OverDifferenceChart,
-    OverLoadings, ParametrisedField, Regular, ShootingNodes, TangentVector, TestFunction, Tracer,
-    WatchedFunction, of_digits,
+    Condition, ContinuationPoint, Corrector, Goal, InterfaceSystem, ParametrisedField, Regular,
+    ShootingNodes, TangentVector, TestFunction, Tracer, WatchedFunction, of_digits,
 };
 
 /// Significant digits of the nodes that the second method begins with; more where it does not find its way from fewer.
@@ -25,7 +25,7 @@ const TOLERANCE: f64 = 1e-12;
 /// orbit's, and for tops, which have no condition of their own.
 ///
 /// # Errors
-/// [`Error::NotConverged`] where the second method does not find the point; those of the method.
+/// As of [`GeneralSystem::crosscheck`].
 pub fn crosscheck(
     slab: &InterfaceSystem,
     special: &Special,
@@ -36,26 +36,34 @@ pub fn crosscheck(
     };
     let period = special.period.map_or(f64::NAN, |period| period.value);
     let first = [special.driving.value, special.stiffness.value, period];
-    let family = |symmetry| OverLoadings::new(*slab, symmetry);
-    let planar = orbit.nodes.first().is_some_and(|x| x.len() == 2);
-    let across = orbit
-        .meets
-        .contains(&WatchedFunction::TestFunction(TestFunction::Transverse));
-    let second = if across {
-        second_pitchfork(slab, orbit, method)?
-    } else if planar {
-        second(&family(Symmetry::Symmetric), orbit, method)?
-    } else if orbit.in_difference_chart {
-        let family = OverDifferenceChart(family(Symmetry::Asymmetric));
-        second(&family, orbit, method)?
-    } else {
-        second(&family(Symmetry::Asymmetric), orbit, method)?
-    };
+    let second = with_system(slab, Parameter::Driving, |system| {
+        system.crosscheck(orbit, method)
+    })?;
     Ok(Some([0, 1, 2].map(|i| second[i] / first[i] - 1.0)))
 }
 
+impl GeneralSystem<'_> {
+    /// The parameters and the period of a special orbit once more, by an unlike method. That begins from the first one's nodes, cut
+    /// to a few digits, and shares nothing else with it.
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`] where the second method does not find the orbit; those of the method.
+    pub fn crosscheck(&self, orbit: &SpecialOrbit, method: Choice) -> Result<[f64; 3]> {
+        let dimension = orbit.nodes.first().map_or(0, Vec::len);
+        let across = WatchedFunction::TestFunction(TestFunction::Transverse);
+        let alike = self.alike.filter(|alike| alike.dimension() == dimension);
+        match self.difference {
+            Some(difference) if orbit.meets.contains(&across) => {
+                pitchfork(difference, orbit, method)
+            }
+            Some(difference) if orbit.in_difference_chart => second(difference, orbit, method),
+            _ => second(alike.unwrap_or(self.family), orbit, method),
+        }
+    }
+}
+
 /// The parameters and the period of a special orbit of a family, by the second method.
-pub(in crate::bifurcation) fn second(
+fn second(
     family: &dyn ParametrisedField,
     orbit: &SpecialOrbit,
     method: Choice,
@@ -78,16 +86,15 @@ pub(in crate::bifurcation) fn second(
 
 /// The same at a pitchfork, in another formulation too: there an orbit closes on which the interfaces differ by next to nothing,
 /// so that how much they do is free.
-fn second_pitchfork(
-    slab: &InterfaceSystem,
+fn pitchfork(
+    family: &dyn ParametrisedField,
     orbit: &SpecialOrbit,
     method: Choice,
 ) -> Result<[f64; 3]> {
     /// ln D at the first node: far below rounding, and far above the smallest number.
     const FAINT: f64 = -300.0;
-    let family = OverDifferenceChart(OverLoadings::new(*slab, Symmetry::Asymmetric));
     let tolerances = Tolerances::equal(TOLERANCE)?;
-    let mut corrector = Corrector::by(&family, Tracer::new(method, tolerances, MAX_STEPS)?);
+    let mut corrector = Corrector::by(family, Tracer::new(method, tolerances, MAX_STEPS)?);
     let others = orbit
         .meets
         .iter()
@@ -119,10 +126,10 @@ fn second_pitchfork(
             .ok()
     };
     let found = DIGITS.iter().find_map(|&digits| found(digits));
-    found_again(&family, found)
+    found_again(family, found)
 }
 
-/// V_H, K and the period of what was found.
+/// The parameters and the period of what was found.
 fn found_again(family: &dyn ParametrisedField, found: Option<Regular>) -> Result<[f64; 3]> {
     let again = found.ok_or(Error::NotConverged {
         what: "the special orbit, by the second method",
@@ -130,8 +137,8 @@ fn found_again(family: &dyn ParametrisedField, found: Option<Regular>) -> Result
         residual: f64::INFINITY,
         tolerance: Goal::SHARP.done,
     })?;
-    let [driving, stiffness] = family.parameters(again.site.at);
-    Ok([driving, stiffness, again.site.shooting.period()])
+    let [first, second] = family.parameters(again.site.at);
+    Ok([first, second, again.site.shooting.period()])
 }
 
 /// The orbit with only so many digits left.

@@ -1,63 +1,24 @@
 //! The cubic coefficient of the normal form: the criticality of a bifurcation, and where along a curve that changes.
 
+use super::chart::Chart;
+use super::half_curve::{CurvesOfKind, HalfCurve};
 use super::normal_form::Form;
-use super::slab_chart::Chart;
-use crate::bifurcation::{Criticality, Label, Special};
-use crate::equilibrium::Symmetry;
-use crate::model::{DRIVING, Parameter, STIFFNESS};
+use super::orbit_point::orbit_point;
+use crate::bifurcation::general::{Classified, GeneralPoint};
+use crate::bifurcation::{Criticality, Label};
+use crate::model::Parameter;
 use crate::number::Uncertain;
 use crate::orbit::{
-    Condition, ContinuationPoint, Corrector, Goal, OverLoadings, ParametrisedField, Regular,
-    TestFunction,
+    Condition, ContinuationPoint, Corrector, Goal, ParametrisedField, Regular, TestFunction,
 };
+use std::ops::ControlFlow::{self, Continue};
 
-/// Which way a bifurcation goes.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct CubicCoefficient {
-    pub criticality: Criticality,
-    /// The cubic coefficient whose sign that is.
-    pub coefficient: Uncertain,
-}
-
-impl CubicCoefficient {
-    /// By the cubic coefficient in the space of all states.
-    pub fn at(chart: Chart, site: &ContinuationPoint, form: Form) -> Self {
-        let (coefficient, criticality) = chart.normal_form(site, form);
-        CubicCoefficient {
-            criticality,
-            coefficient,
-        }
-    }
-
-    /// The same at a point of a curve. `None` for folds.
-    pub fn along(
-        chart: Chart,
-        site: &ContinuationPoint,
-        test_function: TestFunction,
-    ) -> Option<Self> {
-        let form = match test_function {
-            TestFunction::Torus => Form::Torus,
-            TestFunction::Doubling => Form::Doubling,
-            TestFunction::Transverse => Form::Pitchfork,
-            _ => return None,
-        };
-        Some(CubicCoefficient::at(chart, site, form))
-    }
-}
-
-impl Special {
-    /// Which way it goes, as far as that is decided.
-    pub(super) fn goes(&mut self, way: Option<CubicCoefficient>) {
-        self.criticality = way.map(|way| way.criticality);
-        let sure = way.filter(|way| way.coefficient.uncertainty.is_finite());
-        self.coefficient = sure.map(|way| way.coefficient.value);
-        self.coefficient_uncertainty = sure.map(|way| way.coefficient.uncertainty);
-    }
-}
+/// The cubic coefficient, and which way the bifurcation goes.
+type Way = (Uncertain, Criticality);
 
 /// A curve of bifurcations, along which the cubic coefficient may be zero.
 #[derive(Clone, Copy)]
-pub(in crate::bifurcation) struct CoefficientCurve<'a> {
+pub(super) struct CoefficientCurve<'a> {
     /// The fields in which orbits of the curve are solved for.
     pub family: &'a dyn ParametrisedField,
     /// What is zero along the curve.
@@ -70,7 +31,7 @@ pub(in crate::bifurcation) struct CoefficientCurve<'a> {
 
 /// An orbit on a curve where it is decided which way the bifurcation goes.
 #[derive(Debug, Clone)]
-pub(in crate::bifurcation) struct Decided {
+pub(super) struct Decided {
     site: ContinuationPoint,
     /// ln of the multipliers' product.
     volume: f64,
@@ -79,7 +40,7 @@ pub(in crate::bifurcation) struct Decided {
 
 /// Where the cubic coefficient is zero: a Chenciner point, a degenerate period doubling or pitchfork.
 #[derive(Debug, Clone)]
-pub(in crate::bifurcation) struct CoefficientZero {
+pub(super) struct CoefficientZero {
     /// Which of these.
     pub label: Label,
     /// The orbit.
@@ -103,11 +64,6 @@ impl Decided {
             volume: here.spectrum.volume,
             coefficient,
         })
-    }
-
-    /// The orbit.
-    pub fn site(&self) -> &ContinuationPoint {
-        &self.site
     }
 
     /// The orbit on the curve near a site, at this value of the coordinate that is held: whether it is decided there or not.
@@ -182,11 +138,11 @@ impl Decided {
             }
         }
         let (zero, orbit) = zero.filter(|(zero, _)| zero.coefficient.value.abs() < largest)?;
-        zero.told(orbit, curve)
+        zero.with_budget(orbit, curve)
     }
 
     /// The zero of the coefficient, with the uncertainty that its own leaves.
-    fn told(&self, orbit: Regular, curve: CoefficientCurve<'_>) -> Option<CoefficientZero> {
+    fn with_budget(&self, orbit: Regular, curve: CoefficientCurve<'_>) -> Option<CoefficientZero> {
         /// How far beside it the slopes are taken.
         const BESIDE: f64 = 1e-4;
         /// Rounding, in the coordinates.
@@ -215,53 +171,98 @@ impl Decided {
     }
 }
 
-impl CoefficientZero {
-    /// As a special point of a slab in V_H and K.
-    pub(super) fn special(self) -> Special {
-        Special {
-            period: Some(self.period),
-            note: self.note,
-            ..Special::new(self.label, self.at[DRIVING], self.at[STIFFNESS])
-        }
-    }
+/// What a change of the way that a pitchfork goes is.
+const DEGENERATE: &str = "degenerate pitchfork: a curve of folds of asymmetric orbits ends here";
+
+/// The cubic coefficient at an orbit of a curve; `None` for folds.
+fn way(chart: Chart<'_>, test_function: TestFunction, site: &ContinuationPoint) -> Option<Way> {
+    let form = match test_function {
+        TestFunction::Torus => Form::Torus,
+        TestFunction::Doubling => Form::Doubling,
+        TestFunction::Transverse => Form::Pitchfork,
+        _ => return None,
+    };
+    chart.normal_form(site, form)
 }
 
-impl Chart {
-    /// Does something with a curve in these variables, whose zeros are looked for in ln K.
-    pub(super) fn with_curve<R>(
-        self,
-        test_function: TestFunction,
-        then: impl FnOnce(CoefficientCurve<'_>) -> R,
-    ) -> R {
-        let unknown = (Uncertain::new(0.0, f64::INFINITY), Criticality::Undecided);
-        let coefficient = |site: &ContinuationPoint| {
-            let way = CubicCoefficient::along(self, site, test_function);
-            way.map_or(unknown, |way| (way.coefficient, way.criticality))
-        };
-        then(CoefficientCurve {
-            family: self.family(),
-            test_function,
-            coefficient: &coefficient,
-            held: STIFFNESS,
+/// Does something with a curve in these variables, whose zeros are looked for in one of the coordinates.
+fn with_curve<R>(
+    chart: Chart<'_>,
+    test_function: TestFunction,
+    held: usize,
+    then: impl FnOnce(CoefficientCurve<'_>) -> R,
+) -> R {
+    let unknown = (Uncertain::new(0.0, f64::INFINITY), Criticality::Undecided);
+    then(CoefficientCurve {
+        family: chart.family(),
+        test_function,
+        coefficient: &|site| way(chart, test_function, site).unwrap_or(unknown),
+        held,
+    })
+}
+
+impl CurvesOfKind<'_, '_> {
+    /// The degenerate pitchfork near a symmetric orbit that a curve of folds of asymmetric orbits has come to.
+    pub fn degenerate_pitchfork(
+        &self,
+        chart: Chart<'_>,
+        near: &ContinuationPoint,
+    ) -> Option<CoefficientZero> {
+        /// How far to both sides it is looked for, in the second coordinate.
+        const FAR: f64 = 0.01;
+        with_curve(chart, TestFunction::Transverse, 1, |curve| {
+            let [below, above] =
+                [-FAR, FAR].map(|off| Decided::beside(near, curve, near.at[1] + off));
+            let ((below, _), (above, _)) = (below?, above?);
+            below.change(&above, curve)
         })
     }
 }
 
-/// The degenerate pitchfork near an orbit at which a curve of folds of asymmetric orbits has come to symmetric ones.
-pub(super) fn degenerate_pitchfork(
-    family: &OverLoadings,
-    near: &ContinuationPoint,
-) -> Option<Special> {
-    /// How far to both sides it is looked for, in ln K.
-    const FAR: f64 = 0.01;
-    let chart = Chart::new(family.slab, Symmetry::Symmetric);
-    chart.with_curve(TestFunction::Transverse, |curve| {
-        let [below, above] =
-            [-FAR, FAR].map(|off| Decided::beside(near, curve, near.at[STIFFNESS] + off));
-        let ((below, _), (above, _)) = (below?, above?);
-        Some(below.change(&above, curve)?.special())
-    })
-}
+impl HalfCurve<'_, '_, '_> {
+    /// Which way the bifurcation goes at an orbit of the curve; folds have none.
+    pub fn way(&self, site: &ContinuationPoint) -> Option<Way> {
+        way(self.chart, self.kind.test_function, site)
+    }
 
-/// What a change of the way that a pitchfork goes is.
-const DEGENERATE: &str = "degenerate pitchfork: a curve of folds of asymmetric orbits ends here";
+    /// The same where it is asked for at every point.
+    pub fn wanted_way(&self, site: &ContinuationPoint) -> Option<Way> {
+        match self.kind.curve.criticality {
+            Classified::Every => self.way(site),
+            _ => None,
+        }
+    }
+
+    /// Which way the bifurcation goes at the next orbit, where that is asked for. Tells of where the coefficient is zero between the last orbit at which
+    /// that was decided and this one.
+    pub fn changes(&mut self, here: &Regular) -> ControlFlow<(), Option<Way>> {
+        let way = self.wanted_way(&here.site);
+        let now = way.and_then(|(coefficient, way)| Decided::new(here, coefficient, way));
+        if let Some(now) = now
+            && let Some(before) = self.decided.replace(now.clone())
+        {
+            let moved = |i: usize| (now.site.at[i] - before.site.at[i]).abs();
+            let held = usize::from(moved(1) >= moved(0));
+            let zero = with_curve(self.chart, self.kind.test_function, held, |curve| {
+                before.change(&now, curve)
+            });
+            if let Some(zero) = zero {
+                let point = self.zero_of_coefficient(self.chart, zero);
+                self.special(point)?;
+            }
+        }
+        Continue(way)
+    }
+
+    /// Where the coefficient is zero, as a point of the curve.
+    pub fn zero_of_coefficient(&self, chart: Chart<'_>, zero: CoefficientZero) -> GeneralPoint {
+        let point = GeneralPoint {
+            parameters: zero.at,
+            period: Some(zero.period),
+            note: zero.note,
+            symmetry: self.chart.symmetry(),
+            ..orbit_point(chart, self.number, &zero.orbit, Some(zero.label))
+        };
+        self.angled(point, &zero.orbit)
+    }
+}

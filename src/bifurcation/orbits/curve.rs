@@ -1,35 +1,26 @@
 //! One two-parameter curve of bifurcations, followed in both directions from a point on it.
 
 use super::branches::new_corrector;
-use super::half_curve::{HalfCurve, Pass};
-use super::locus::Locus;
-use super::scan::core_to_spare;
-use crate::bifurcation::{Event, EventObserver};
+use super::ends::backwards;
+use super::half_curve::{CurvesOfKind, HalfCurve};
+use crate::bifurcation::general::{GeneralEvent, GeneralObserver, Teller};
 use crate::error::Result;
-use crate::model::STIFFNESS;
 use crate::orbit::{
     Condition, ContinuationPoint, Corrector, Goal, Palc, PalcSettings, Regular, TangentVector,
 };
-use std::ops::ControlFlow;
+use std::ops::ControlFlow::{Break, Continue};
 use std::sync::mpsc;
 
-/// A curve that was followed.
-pub(super) struct Curve {
-    /// Where it passes values of K at which bifurcations are looked for.
-    pub passes: Vec<Pass>,
-    /// Whether more is wanted.
-    pub told: ControlFlow<()>,
-}
-
 /// Follows the curve on which the seed lies, within the ranges that are asked for: one way, to tell of it from its end on, and
-/// the other, beside it if there is a core to do so. `None` where the seed can't be corrected.
+/// the other, beside it if there is a core to do so. Where it passes the values at which bifurcations are looked for; `None` where the seed can't be
+/// corrected.
 pub(super) fn through(
-    locus: &Locus<'_>,
+    kind: &CurvesOfKind<'_, '_>,
     number: usize,
     seed: ContinuationPoint,
-    seen: EventObserver<'_>,
-) -> Result<Option<Curve>> {
-    let Some(begin) = Beginning::of(locus, number, seed)? else {
+    teller: &mut Teller<'_>,
+) -> Result<Option<Vec<[f64; 3]>>> {
+    let Some(begin) = Beginning::of(kind, number, seed)? else {
         return Ok(None);
     };
     std::thread::scope(|scope| {
@@ -37,116 +28,110 @@ pub(super) fn through(
             let (send, coming) = mpsc::channel();
             // Nobody listens any more where no more is wanted.
             let mut seen = move |event| match send.send(event) {
-                Ok(()) => ControlFlow::Continue(()),
-                Err(_) => ControlFlow::Break(()),
+                Ok(()) => Continue(()),
+                Err(_) => Break(()),
             };
             let begin = &begin;
-            (scope.spawn(move || begin.forth(&mut seen)), coming)
+            (scope.spawn(move || begin.way(-1.0, &mut seen)), coming)
         });
-        let (mut passes, events) = begin.back()?;
-        passes.push(Pass::of(&begin.here));
-        // What has been followed is told of, also to those who then have had enough: nothing is lost.
-        let mut told = ControlFlow::Continue(());
-        for event in events.into_iter().rev() {
-            if seen(event).is_break() {
-                told = ControlFlow::Break(());
+        let mut back = Vec::new();
+        let mut passes = begin.way(1.0, &mut |event| {
+            back.push(event);
+            Continue(())
+        })?;
+        for event in backwards(back).into_iter().chain(begin.first()) {
+            if teller.tell(event).is_break() {
+                return Ok(Some(passes));
             }
         }
-        if told.is_break() {
-            return Ok(Some(Curve { passes, told }));
-        }
-        let rest = match beside {
-            None => begin.forth(seen)?,
+        let more = match beside {
+            None => begin.way(-1.0, &mut |event| teller.tell(event))?,
             Some((forth, coming)) => {
-                let told = coming.into_iter().try_for_each(seen);
+                // Dropped where no more is wanted.
+                let _ = coming.into_iter().try_for_each(|event| teller.tell(event));
                 let forth = forth.join();
-                let forth = forth.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
-                Curve { told, ..forth }
+                forth.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?
             }
         };
-        passes.extend(rest.passes);
-        let told = rest.told;
-        Ok(Some(Curve { passes, told }))
+        passes.extend(more);
+        Ok(Some(passes))
     })
 }
 
+/// Whether there is a core for work beside this. In a pool of threads there is not: it has work for all of them.
+pub(super) fn core_to_spare() -> bool {
+    let several = || std::thread::available_parallelism().is_ok_and(|cores| cores.get() > 1);
+    rayon::current_thread_index().is_none() && several()
+}
+
 /// Where both ways begin.
-struct Beginning<'l, 'r> {
-    locus: &'l Locus<'r>,
+struct Beginning<'k, 'c, 'a> {
+    kind: &'k CurvesOfKind<'c, 'a>,
     number: usize,
     settings: PalcSettings,
-    here: ContinuationPoint,
+    here: Regular,
     direction: TangentVector,
 }
 
-impl<'l, 'r> Beginning<'l, 'r> {
-    fn of(locus: &'l Locus<'r>, number: usize, seed: ContinuationPoint) -> Result<Option<Self>> {
-        let settings = PalcSettings::locus(locus.test_function, locus.longest());
-        let mut corrector = new_corrector(locus.chart.family())?;
-        let begin = first(&mut corrector, &settings, seed);
-        Ok(begin.map(|(here, direction)| Beginning {
-            locus,
+impl<'k, 'c, 'a> Beginning<'k, 'c, 'a> {
+    /// The bifurcation at the seed's value of the coordinate that is held, and the direction along the curve there in which the second one falls: a curve
+    /// is told of with that growing.
+    fn of(
+        kind: &'k CurvesOfKind<'c, 'a>,
+        number: usize,
+        seed: ContinuationPoint,
+    ) -> Result<Option<Self>> {
+        let settings = kind.settings();
+        let mut corrector = new_corrector(kind.chart.family())?;
+        let Some(here) = first(&mut corrector, &settings, kind.held, seed) else {
+            return Ok(None);
+        };
+        let Some(direction) = settings.direction(&here, &here.along[0]) else {
+            return Ok(None);
+        };
+        let falls = -direction.parameters[1].signum();
+        Ok(Some(Beginning {
+            kind,
             number,
             settings,
             here,
-            direction,
+            direction: direction.scaled(falls),
         }))
     }
 
-    /// One way: where it passes, and all that is to be told of it.
-    fn back(&self) -> Result<(Vec<Pass>, Vec<Event>)> {
-        let mut corrector = new_corrector(self.locus.chart.family())?;
-        let mut back = self.half(None);
-        if let Ok(mut palc) = self.palc(&mut corrector, 1.0)
-            && !back.leaves(&palc.now)
+    /// What is told of the orbit where both ways begin, which neither comes to again.
+    fn first(&self) -> Vec<GeneralEvent> {
+        self.half(&mut |_| Continue(())).first(&self.here)
+    }
+
+    /// One way: where it passes the values at which bifurcations are looked for.
+    fn way(&self, sense: f64, seen: GeneralObserver<'_>) -> Result<Vec<[f64; 3]>> {
+        let mut corrector = new_corrector(self.kind.chart.family())?;
+        let mut half = self.half(seen);
+        let (here, direction) = (self.here.site.clone(), self.direction.clone());
+        let settings = self.settings.clone();
+        let palc = Palc::from(&mut corrector, settings, here, direction.scaled(sense));
+        if let Ok(mut palc) = palc
+            && !half.leaves(&palc.now)
         {
-            back.go(&mut palc)?;
+            half.go(&mut palc)?;
         }
-        Ok(back.kept())
+        Ok(half.passes)
     }
 
-    /// The other way, from the beginning on.
-    fn forth(&self, seen: EventObserver<'_>) -> Result<Curve> {
-        let mut corrector = new_corrector(self.locus.chart.family())?;
-        let mut forth = self.half(Some(seen));
-        if let Ok(mut palc) = self.palc(&mut corrector, -1.0) {
-            forth.begins(&mut palc);
-            if forth.told.is_continue() && !forth.leaves(&palc.now) {
-                forth.go(&mut palc)?;
-            }
-        }
-        let told = forth.told;
-        let passes = forth.kept().0;
-        Ok(Curve { passes, told })
-    }
-
-    fn half<'s>(&self, seen: Option<EventObserver<'s>>) -> HalfCurve<'r, 's> {
-        HalfCurve::new(self.locus, self.number, Pass::of(&self.here), seen)
-    }
-
-    fn palc<'c, 'f>(&self, corrector: &'c mut Corrector<'f>, way: f64) -> Result<Palc<'c, 'f>> {
-        let (here, direction) = (self.here.clone(), self.direction.clone());
-        Palc::from(
-            corrector,
-            self.settings.clone(),
-            here,
-            direction.scaled(way),
-        )
+    fn half<'s>(&'s self, seen: GeneralObserver<'s>) -> HalfCurve<'s, 'c, 'a> {
+        HalfCurve::new(self.kind, self.number, &self.here.site, seen)
     }
 }
 
-/// The bifurcation at the seed's K, and a direction along the curve there.
 fn first(
     corrector: &mut Corrector<'_>,
     settings: &PalcSettings,
+    held: usize,
     seed: ContinuationPoint,
-) -> Option<(ContinuationPoint, TangentVector)> {
-    let fixed = settings.and(Condition::Parameter(STIFFNESS, seed.at[STIFFNESS]));
-    let closed: Regular = corrector
-        .correct(seed, &settings.free, &fixed, Goal::STEP)
-        .ok()?;
-    let here = corrector.look(closed.site, &settings.free, &settings.own());
-    let here = here.ok()?;
-    let direction = settings.direction(&here, &here.along[0])?;
-    Some((here.site, direction))
+) -> Option<Regular> {
+    let fixed = settings.and(Condition::Parameter(held, seed.at[held]));
+    let closed = corrector.correct(seed, &settings.free, &fixed, Goal::STEP);
+    let here = corrector.look(closed.ok()?.site, &settings.free, &settings.own());
+    here.ok()
 }

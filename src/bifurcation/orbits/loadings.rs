@@ -1,7 +1,8 @@
 //! One or two equal interfaces in V_H and K: their branches of orbits are those of any system, with a symmetry and with Hopf points that are known
 //! from closed forms.
 
-use super::branches::{HopfBeginning, orbits};
+use super::branches::orbits;
+use super::hopf::HopfBeginning;
 use crate::bifurcation::general::{
     Exchanged, GeneralBranch, GeneralEvent, GeneralFollowing, GeneralPoint, GeneralSolution,
     GeneralSystem, in_order,
@@ -70,45 +71,46 @@ pub fn branch(request: &BranchRequest, seen: EventObserver<'_>) -> Result<()> {
 }
 
 /// Does something with a slab over the logarithms of V_H and K, of which the one that varies is the first.
-fn with_system<R>(
+pub(super) fn with_system<R>(
     slab: &InterfaceSystem,
     along: Parameter,
     then: impl FnOnce(&GeneralSystem<'_>) -> R,
 ) -> R {
     let alike = OverLoadings::new(*slab, Symmetry::Symmetric);
-    let asymmetric = OverLoadings::new(*slab, Symmetry::Asymmetric);
-    let difference = OverDifferenceChart(asymmetric);
+    let difference = OverDifferenceChart(OverLoadings::new(*slab, Symmetry::Asymmetric));
     let whole = whole(slab);
-    let exchanged = (Exchanged(&whole), Exchanged(&alike), Exchanged(&difference));
-    let (family, alike, difference): (
-        &dyn ParametrisedField,
-        &dyn ParametrisedField,
-        &dyn ParametrisedField,
-    ) = match along.place() {
-        0 => (&whole, &alike, &difference),
-        _ => (&exchanged.0, &exchanged.1, &exchanged.2),
-    };
     let both = slab.interfaces == 2;
     let interchangeable = match both {
         true => vec![vec![1, 2]],
         false => Vec::new(),
     };
+    let place = along.place();
     let known = |at: [f64; 2]| {
-        let [log_driving, _] = in_order(along.place(), at);
+        let [log_driving, _] = in_order(place, at);
         let driving = log_driving.exp();
         let states = steady_states(&slab.law, driving, slab.interfaces, Solver::Newton)?;
-        let state = |one: &Equilibrium| state(slab, one);
-        Ok(states.equilibria.iter().map(state).collect())
+        Ok(states
+            .equilibria
+            .iter()
+            .map(|one| state(slab, one))
+            .collect())
     };
-    then(&GeneralSystem {
-        family,
-        alike: Some(alike),
-        difference: both.then_some(difference),
+    let exchanged = (Exchanged(&whole), Exchanged(&alike), Exchanged(&difference));
+    let mut system = GeneralSystem {
+        family: &whole,
+        alike: Some(&alike),
+        difference: both.then_some(&difference),
         interchangeable: &interchangeable,
-        names: in_order(along.place(), ["driving", "stiffness"]),
+        names: in_order(place, ["driving", "stiffness"]),
         equilibria: &known,
         bounds: &[],
-    })
+    };
+    if along == Parameter::Stiffness {
+        system.family = &exchanged.0;
+        system.alike = Some(&exchanged.1);
+        system.difference = both.then_some(&exchanged.2);
+    }
+    then(&system)
 }
 
 /// All states of a slab: of a single interface those in which all of them move alike.
@@ -171,7 +173,8 @@ impl BranchRequest {
     fn event(&self, event: GeneralEvent) -> Result<Event> {
         let point = match event {
             GeneralEvent::Special(point) => {
-                return Ok(Event::Special(self.special(point).against(self.tolerance)));
+                let special = special(point.clone(), self.given(&point), self.along);
+                return Ok(Event::Special(special.against(self.tolerance)));
             }
             GeneralEvent::Row(point) => point,
         };
@@ -232,36 +235,31 @@ impl BranchRequest {
             label: point.label,
         })
     }
+}
 
-    fn special(&self, point: GeneralPoint) -> Special {
-        let is_orbit = matches!(point.solution, GeneralSolution::Orbit { .. });
-        let given = match is_orbit {
-            true => self.given(&point),
-            // The closed forms know what is exact.
-            false => [None; 2],
-        };
-        let place = self.along.place();
-        let [driving, stiffness] = in_order(place, point.parameters);
-        let exactly =
-            |x: Uncertain, given: Option<f64>| given.map_or(x, |given| Uncertain::new(given, 0.0));
-        let [given_driving, given_stiffness] = given;
-        Special {
-            branch: point.number,
-            symmetry: point.symmetry,
-            period: point.period,
-            criticality: point.criticality,
-            coefficient: point.coefficient,
-            coefficient_uncertainty: point.coefficient_uncertainty,
-            note: point.note,
-            orbit: point.orbit.map(|orbit| match place {
-                0 => orbit,
-                _ => orbit.exchanged(),
-            }),
-            ..Special::new(
-                point.label.unwrap_or(Label::Mx),
-                exactly(driving, given_driving),
-                exactly(stiffness, given_stiffness),
-            )
-        }
+/// A special point in V_H and K, of which these are given.
+pub(super) fn special(point: GeneralPoint, given: [Option<f64>; 2], along: Parameter) -> Special {
+    let given = match point.solution {
+        GeneralSolution::Orbit { .. } => given,
+        // The closed forms know what is exact.
+        GeneralSolution::Equilibrium { .. } => [None; 2],
+    };
+    let place = along.place();
+    let parameters = in_order(place, point.parameters);
+    let [driving, stiffness] =
+        [0, 1].map(|i| given[i].map_or(parameters[i], |given| Uncertain::new(given, 0.0)));
+    Special {
+        branch: point.number,
+        symmetry: point.symmetry,
+        period: point.period,
+        criticality: point.criticality,
+        coefficient: point.coefficient,
+        coefficient_uncertainty: point.coefficient_uncertainty,
+        note: point.note,
+        orbit: point.orbit.map(|orbit| match place {
+            0 => orbit,
+            _ => orbit.exchanged(),
+        }),
+        ..Special::new(point.label.unwrap_or(Label::Mx), driving, stiffness)
     }
 }

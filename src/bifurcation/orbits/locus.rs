@@ -1,18 +1,20 @@
-//! Two-parameter continuation of bifurcations of periodic orbits in the (V_H, K) plane: folds, period doublings, Neimark-Sacker
-//! bifurcations and pitchforks, with what is special on them.
+//! Two-parameter continuation of bifurcations of periodic orbits of equal interfaces in the (V_H, K) plane.
 //!
-//! They start from the bifurcations met along a few branches, and are followed both ways with V_H and K free: past their tops,
-//! through resonances, to where the bifurcation ceases to be one.
+//! The curves are those of any system. They start from the bifurcations met along branches at a few values of K, which are found once for all
+//! kinds of curves that are asked for.
 
-use super::curve::through;
-use super::half_curve::Pass;
+use super::loadings::{special, with_system};
+use super::orbit_curves::{OrbitSeeds, orbit_curves};
 use super::scan::Scan;
-use super::slab_chart::Chart;
-use crate::bifurcation::{Event, EventObserver, LocusKind, LocusRequest, within};
+use crate::bifurcation::general::{
+    Classified, GeneralBifurcation, GeneralCurve, GeneralEvent, GeneralFollowing, GeneralPoint,
+};
+use crate::bifurcation::{Event, EventObserver, LocusKind, LocusRequest, LocusRow, Parameter};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
+use crate::number::Uncertain;
 use crate::orbit::{ContinuationPoint, InterfaceSystem, TestFunction};
-use std::ops::ControlFlow::{self, Break, Continue};
+use std::ops::ControlFlow;
 
 /// Follows all curves of the kind that is asked for, and hands on what is found.
 ///
@@ -41,24 +43,17 @@ pub fn loci(
         ordered.push((request.ordered(), symmetries(request)?));
     }
     let mut scans: Option<Scans> = None;
-    for (i, (request, own)) in ordered.iter().enumerate() {
+    for (i, (request, _)) in ordered.iter().enumerate() {
         let mut scan = match scans.take() {
             Some(scans) if scans.serves(request) => scans,
             _ => Scans::new(&ordered[i..]),
         };
-        let (mut count, mut stopped) = (0, false);
-        let mut hand_on = |event| {
+        scan.along(request.stiffness);
+        let mut stopped = false;
+        request.follow(&scan, &mut |event| {
             let onward = seen(i, event);
             stopped |= onward.is_break();
             onward
-        };
-        within(request.max_points, &mut hand_on, |seen| {
-            for symmetry in own {
-                if Locus::all(request, scan.of(*symmetry), &mut count, seen)?.is_break() {
-                    break;
-                }
-            }
-            Ok(())
         })?;
         if stopped {
             return Ok(());
@@ -74,6 +69,9 @@ struct Scans {
     driving: (f64, f64),
     symmetric: Scan,
     asymmetric: Scan,
+    /// The values of K at which bifurcations are looked for, and their logarithms.
+    scanned: Vec<f64>,
+    logs: Vec<f64>,
 }
 
 impl Scans {
@@ -85,28 +83,70 @@ impl Scans {
             driving,
             symmetric: Scan::new(slab, driving, Symmetry::Symmetric),
             asymmetric: Scan::new(slab, driving, Symmetry::Asymmetric),
+            scanned: Vec::new(),
+            logs: Vec::new(),
         };
         for (request, symmetries) in requests {
             if !scans.serves(request) {
                 break;
             }
             for symmetry in symmetries {
-                scans.of(*symmetry).also(of_kind(request.kind));
+                scans.of_mut(*symmetry).also(of_kind(request.kind));
             }
         }
         scans
     }
 
-    fn of(&mut self, symmetry: Symmetry) -> &mut Scan {
+    fn of(&self, symmetry: Symmetry) -> &Scan {
+        match symmetry {
+            Symmetry::Symmetric => &self.symmetric,
+            Symmetry::Asymmetric => &self.asymmetric,
+        }
+    }
+
+    fn of_mut(&mut self, symmetry: Symmetry) -> &mut Scan {
         match symmetry {
             Symmetry::Symmetric => &mut self.symmetric,
             Symmetry::Asymmetric => &mut self.asymmetric,
         }
     }
 
+    /// Looks in this range of K.
+    fn along(&mut self, stiffness: (f64, f64)) {
+        let scanned = scanned(stiffness);
+        self.symmetric.along(&scanned);
+        self.asymmetric.along(&scanned);
+        self.logs = scanned.iter().map(|k| k.ln()).collect();
+        self.scanned = scanned;
+    }
+
     /// Whether the branches of a request are these.
     fn serves(&self, request: &LocusRequest) -> bool {
         self.slab == request.slab && self.driving == request.driving
+    }
+}
+
+impl OrbitSeeds for Scans {
+    fn values(&self) -> &[f64] {
+        &self.logs
+    }
+
+    fn at(
+        &self,
+        held: f64,
+        symmetry: Symmetry,
+        test_function: TestFunction,
+    ) -> Result<Vec<ContinuationPoint>> {
+        let scanned = self.logs.iter().zip(&self.scanned);
+        let mut there = scanned.filter(|(log, _)| **log == held);
+        match there.next() {
+            Some((_, stiffness)) => self.of(symmetry).at(*stiffness, test_function),
+            None => Ok(Vec::new()),
+        }
+    }
+
+    fn beside(&self, symmetry: Symmetry, work: &mut dyn FnMut()) {
+        self.of(symmetry).beside(work);
     }
 }
 
@@ -149,8 +189,8 @@ fn symmetries(request: &LocusRequest) -> Result<Vec<Symmetry>> {
     Ok(wanted)
 }
 
-/// The longest step along a curve.
-const LONGEST: f64 = 0.3;
+/// Steps, in parts of those along curves of any system: figures show these curves.
+const SHORTER: f64 = 3.0 / 7.0;
 /// Below this K no branch is followed for seeds, unless the range ends there: the curves that there are come down from above.
 const LOWEST: f64 = 0.03;
 /// Above this K there is none.
@@ -172,78 +212,72 @@ fn scanned((from, to): (f64, f64)) -> Vec<f64> {
         .collect()
 }
 
-/// The curves of one kind and symmetry.
-pub(super) struct Locus<'r> {
-    /// The values of ln K at which bifurcations are looked for.
-    pub scan: &'r [f64],
-    pub request: &'r LocusRequest,
-    pub chart: Chart,
-    pub test_function: TestFunction,
-    /// Where the curves so far pass these.
-    known: Vec<Pass>,
-}
+impl LocusRequest {
+    fn follow(&self, seeds: &Scans, seen: EventObserver<'_>) -> Result<()> {
+        let logs = |(from, to): (f64, f64)| (from.ln(), to.ln());
+        let ranges = [logs(self.driving), logs(self.stiffness)];
+        let all = |values: &[f64]| values.iter().map(|x| x.ln()).collect();
+        with_system(&self.slab, Parameter::Driving, |system| {
+            let test_function = of_kind(self.kind);
+            let curve = GeneralCurve {
+                system: *system,
+                kind: GeneralBifurcation::Orbit(test_function),
+                ranges,
+                beyond: ranges,
+                at: [all(&self.at_driving), all(&self.at_stiffness)],
+                orbit: None,
+                seeds: Some(seeds),
+                symmetry: self.symmetry,
+                criticality: match self.criticality {
+                    true => Classified::Every,
+                    false => Classified::Never,
+                },
+                following: GeneralFollowing {
+                    step: SHORTER * self.step,
+                    skip: self.skip.clone(),
+                    max_points: self.max_points,
+                },
+            };
+            orbit_curves(&curve, test_function, &mut |event| {
+                seen(match event {
+                    GeneralEvent::Row(point) => Event::Locus(self.row(&point)),
+                    GeneralEvent::Special(point) => {
+                        let special =
+                            special(point.clone(), self.given(&point), Parameter::Driving);
+                        Event::Special(special.against(self.tolerance))
+                    }
+                })
+            })
+        })
+    }
 
-impl<'r> Locus<'r> {
-    fn all(
-        request: &'r LocusRequest,
-        branches: &mut Scan,
-        count: &mut usize,
-        seen: EventObserver<'_>,
-    ) -> Result<ControlFlow<()>> {
-        let scan = scanned(request.stiffness);
-        branches.along(&scan);
-        let branches = &*branches;
-        let mut locus = Locus {
-            scan: &scan.iter().map(|k| k.ln()).collect::<Vec<_>>(),
-            request,
-            chart: Chart::new(request.slab, branches.symmetry),
-            test_function: of_kind(request.kind),
-            known: Vec::new(),
+    /// V_H and K of a point as they were given, where they were: not the exponentials of their logarithms.
+    fn given(&self, point: &GeneralPoint) -> [Option<f64>; 2] {
+        let asked = |range: (f64, f64), wanted: &[f64], at: f64| {
+            let mut all = [range.0, range.1].into_iter().chain(wanted.iter().copied());
+            all.find(|x| x.ln() == at)
         };
-        branches.beside(|| locus.follow(branches, &scan, count, seen))
+        [
+            asked(self.driving, &self.at_driving, point.at[0]),
+            asked(self.stiffness, &self.at_stiffness, point.at[1]),
+        ]
     }
 
-    fn follow(
-        &mut self,
-        branches: &Scan,
-        scan: &[f64],
-        count: &mut usize,
-        seen: EventObserver<'_>,
-    ) -> Result<ControlFlow<()>> {
-        for &stiffness in scan {
-            for seed in branches.at(stiffness, self.test_function)? {
-                if self.is_known(&seed) {
-                    continue;
-                }
-                let number = *count;
-                *count += 1;
-                // A curve that is not to be told of is followed all the same: what lies on it would be taken for another one.
-                let found = if self.request.skip.contains(&number) {
-                    through(self, number, seed, &mut |_| Continue(()))?
-                } else {
-                    through(self, number, seed, seen)?
-                };
-                let Some(curve) = found else {
-                    *count -= 1;
-                    continue;
-                };
-                if curve.told.is_break() {
-                    return Ok(Break(()));
-                }
-                self.known.extend(curve.passes);
-            }
+    fn row(&self, point: &GeneralPoint) -> LocusRow {
+        let exactly =
+            |x: Uncertain, given: Option<f64>| given.map_or(x, |given| Uncertain::new(given, 0.0));
+        let [driving, stiffness] = point.parameters;
+        let [given_driving, given_stiffness] = self.given(point);
+        LocusRow {
+            share: None,
+            curve: point.number,
+            symmetry: point.symmetry.unwrap_or(Symmetry::Symmetric),
+            driving: exactly(driving, given_driving),
+            stiffness: exactly(stiffness, given_stiffness),
+            period: point.period.map(|period| period.value),
+            angle_over_pi: point.angle_over_pi,
+            criticality: point.criticality,
+            label: point.label,
         }
-        Ok(Continue(()))
-    }
-
-    /// Whether a curve that was followed passes there.
-    fn is_known(&self, seed: &ContinuationPoint) -> bool {
-        let here = Pass::of(seed);
-        self.known.iter().any(|pass| pass.is(&here))
-    }
-
-    /// The longest step.
-    pub fn longest(&self) -> f64 {
-        LONGEST * self.request.step
     }
 }

@@ -4,11 +4,8 @@
 //! but few solutions may agree by chance, so the noise of the flow, as the equations carry it to the point, counts as well.
 //! What can't be solved more than once claims nothing.
 
-use super::slab_chart::Chart;
 use crate::bifurcation::general::in_order;
-use crate::bifurcation::{Label, Special};
 use crate::integrate::Choice;
-use crate::model::{DRIVING, STIFFNESS};
 use crate::number::Uncertain;
 use crate::orbit::{
     ContinuationPoint, Corrector, Goal, Noise, ParametrisedField, Regular, WatchedFunction,
@@ -75,8 +72,6 @@ const SOLUTIONS: [([f64; 2], f64); 3] = [
 /// The solutions' largest difference, and standard deviations of the noise, count so many times.
 const SPREAD: f64 = 2.0;
 const DEVIATIONS: f64 = 3.0;
-/// A relative uncertainty of V_H with which no other variables are tried.
-const ENOUGH: f64 = 1e-11;
 /// Rounding, in units of the value: of the sum of durations, and of a parameter beside that of its logarithm.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
@@ -157,58 +152,7 @@ pub fn refined(
     })
 }
 
-/// A special point of a slab: the best that could be done, or a place on the continuation; and its orbit, where it is refined.
-pub(super) fn special(
-    chart: Chart,
-    label: Label,
-    near: &ContinuationPoint,
-    (free, meets): (&[usize], &[WatchedFunction]),
-) -> (Special, Option<Regular>) {
-    let Some(refined_point) = refined(chart.family(), near, free, meets) else {
-        let kept = kept(chart, label, near, free, meets);
-        let special = kept.unwrap_or_else(|| rough(label, &chart.usual(near)));
-        return (special, None);
-    };
-    let mut special = refined_point.special(label);
-    let orbit = Some(refined_point.orbit);
-    if special.driving.uncertainty > ENOUGH * special.driving.value.abs()
-        && let Some(better) = kept(chart, label, near, free, meets)
-        && better.driving.uncertainty < special.driving.uncertainty
-    {
-        return (better, orbit);
-    }
-    if let Some(orbit) = &mut special.orbit {
-        orbit.in_difference_chart = chart.keeps_difference();
-    }
-    (special, orbit)
-}
-
-/// The same in the difference chart, if there is one.
-fn kept(
-    chart: Chart,
-    label: Label,
-    near: &ContinuationPoint,
-    free: &[usize],
-    meets: &[WatchedFunction],
-) -> Option<Special> {
-    let (chart, there) = chart.keeping(near)?;
-    let mut special = refined(chart.family(), &there, free, meets)?.special(label);
-    if let Some(orbit) = &mut special.orbit {
-        orbit.in_difference_chart = true;
-    }
-    Some(special)
-}
-
 impl RefinedPoint {
-    /// As a special point of a slab.
-    pub fn special(&self, label: Label) -> Special {
-        Special {
-            period: Some(self.period),
-            orbit: Some(self.special_orbit(false)),
-            ..Special::new(label, self.at[DRIVING], self.at[STIFFNESS])
-        }
-    }
-
     /// What is needed to compute it once more.
     pub fn special_orbit(&self, in_difference_chart: bool) -> SpecialOrbit {
         let ContinuationPoint { shooting, at } = &self.orbit.site;
@@ -221,15 +165,5 @@ impl RefinedPoint {
             meets: self.meets.clone(),
             free: self.free.clone(),
         }
-    }
-}
-
-/// A point of which no more is claimed than that it lies on the continuation.
-pub(super) fn rough(label: Label, site: &ContinuationPoint) -> Special {
-    let unknown = |x: f64| Uncertain::new(x, f64::INFINITY);
-    let [driving, stiffness] = site.at.map(|x| unknown(x.exp()));
-    Special {
-        period: Some(unknown(site.shooting.period())),
-        ..Special::new(label, driving, stiffness)
     }
 }

@@ -1,7 +1,9 @@
 //! Where curves of bifurcations begin: the bifurcations along branches at a few values of K, found once for all kinds of curves
 //! that are wanted.
 
-use super::slab_chart::Chart;
+use super::chart::Chart;
+use super::curve::core_to_spare;
+use super::loadings::with_system;
 use crate::continuation::Met;
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
@@ -140,23 +142,25 @@ impl Scan {
             .get_or_init(|| EquilibriaAlong::new(&slab, self.symmetry, Parameter::Driving));
         let equilibria = equilibria.as_ref().map_err(Error::clone)?;
         let hopfs = equilibria.hopf_points(&slab)?;
-        for i in 0..hopfs.len() {
-            if !reached.contains(&i) {
-                self.branch(&slab, (i, &hopfs), &mut reached, &mut found)?;
+        with_system(&slab, Parameter::Driving, |system| {
+            let chart = Chart::of(system, self.symmetry);
+            for i in 0..hopfs.len() {
+                if !reached.contains(&i) {
+                    self.branch(chart, (i, &hopfs), &mut reached, &mut found)?;
+                }
             }
-        }
-        Ok(found)
+            Ok(found)
+        })
     }
 
     /// What is found along the branch of a Hopf point, and which other one it reaches.
     fn branch(
         &self,
-        slab: &InterfaceSystem,
+        chart: Chart<'_>,
         (i, hopfs): (usize, &[HopfPoint]),
         reached: &mut Vec<usize>,
         found: &mut Vec<Bifurcation>,
     ) -> Result<()> {
-        let chart = Chart::new(*slab, self.symmetry);
         let (from, to) = (self.driving.0.ln(), self.driving.1.ln());
         let inside = |site: &ContinuationPoint| (from..=to).contains(&site.at[DRIVING]);
         // On to the other Hopf point of the branch, or the whole branch would be followed from there too.
@@ -200,12 +204,6 @@ impl Scan {
         })?;
         Ok(())
     }
-}
-
-/// Whether there is a core for work beside this. In a pool of threads there is not: it has work for all of them.
-pub(super) fn core_to_spare() -> bool {
-    let several = || std::thread::available_parallelism().is_ok_and(|cores| cores.get() > 1);
-    rayon::current_thread_index().is_none() && several()
 }
 
 /// Along a branch a fold is a turn of V_H.

@@ -1,4 +1,4 @@
-//! Where K is largest along a curve of bifurcations.
+//! Where one of the parameters, as K, is largest along a curve of bifurcations.
 //!
 //! The slope of a curve is known by gradients, to six digits or so. The points themselves are known to the last: the curve is
 //! interpolated through a few, over the distance along one direction, and the interpolating polynomial has its top where the
@@ -11,7 +11,7 @@ use crate::orbit::{
     TangentVector, TestFunction,
 };
 
-/// A stationary value of K on a curve.
+/// A stationary value of a parameter on a curve.
 pub struct Top {
     /// A point of the curve next to it.
     pub orbit: Regular,
@@ -31,12 +31,21 @@ const FINE: f64 = 1e-16;
 /// A stationary point within this part of the shorter arc is in its midst.
 const CENTRED: f64 = 0.5;
 
-/// The stationary point of the second coordinate along the curve of a test function, near a site on it.
+/// The stationary point of a coordinate along the curve of a test function, near a site on it.
 pub fn top(
     family: &dyn ParametrisedField,
     near: &ContinuationPoint,
     test_function: TestFunction,
+    coordinate: usize,
 ) -> Option<Top> {
+    let stationary = |corrector: &mut Corrector<'_>, near: &_, direction: &_, width| {
+        stationary(
+            corrector,
+            (near, direction),
+            width,
+            (test_function, coordinate),
+        )
+    };
     let mut corrector = Corrector::new(family, FINE).ok()?;
     let settings = PalcSettings::locus(test_function, 1.0);
     let own = [Condition::TestFunction(test_function)];
@@ -44,7 +53,7 @@ pub fn top(
     let any = here.along[0].clone();
     let mut direction = settings.direction(&here, &any)?;
     let mut near = near.clone();
-    let mut first = stationary(&mut corrector, &near, &direction, WIDTHS[0], test_function)?;
+    let mut first = stationary(&mut corrector, &near, &direction, WIDTHS[0])?;
     // Where it is farther than the shorter arc goes, both begin there.
     if first.s.abs() > CENTRED * WIDTHS[1] {
         let site = near.moved(&direction, first.s);
@@ -53,9 +62,9 @@ pub fn top(
         near = there.ok()?.site;
         let there = corrector.look(near.clone(), &settings.free, &own).ok()?;
         direction = settings.direction(&there, &direction)?;
-        first = stationary(&mut corrector, &near, &direction, WIDTHS[0], test_function)?;
+        first = stationary(&mut corrector, &near, &direction, WIDTHS[0])?;
     }
-    let second = stationary(&mut corrector, &near, &direction, WIDTHS[1], test_function)?;
+    let second = stationary(&mut corrector, &near, &direction, WIDTHS[1])?;
     let at = near.moved(&direction, second.s);
     let conditions = settings.and(Condition::Plane(&direction, &at));
     let orbit = corrector
@@ -88,12 +97,13 @@ struct Stationary {
 
 fn stationary(
     corrector: &mut Corrector<'_>,
-    near: &ContinuationPoint,
-    direction: &TangentVector,
+    (near, direction): (&ContinuationPoint, &TangentVector),
     width: f64,
-    test_function: TestFunction,
+    (test_function, coordinate): (TestFunction, usize),
 ) -> Option<Stationary> {
+    // K is the coordinate that is stationary, V the other one.
     let (mut v, mut k, mut t) = ([0.0; POINTS], [0.0; POINTS], [0.0; POINTS]);
+    let other = 1 - coordinate;
     for i in 0..POINTS {
         // Chebyshev's points: the least of the interpolation's error.
         let s = ((i as f64 + 0.5) * std::f64::consts::PI / POINTS as f64).cos();
@@ -105,7 +115,7 @@ fn stationary(
         let orbit = corrector
             .correct(at.clone(), &Parameter::PLANE, &conditions, Goal::SHARP)
             .ok()?;
-        [v[i], k[i]] = orbit.site.at;
+        (v[i], k[i]) = (orbit.site.at[other], orbit.site.at[coordinate]);
         t[i] = orbit.site.shooting.period();
     }
     let [v, k, t] = [v, k, t].map(|values| coefficients(&values));
@@ -129,14 +139,18 @@ fn stationary(
     let orders = (POINTS * (POINTS - 1) / 2) as f64;
     let off = orders * noise(&k) / (bend.abs() * (1.0 - x * x).sqrt());
     let (_, slope_of_v, _) = value(&v, x);
-    let errors = [
+    let in_order = |[of_v, of_k]: [f64; 2]| match coordinate {
+        0 => [of_k, of_v],
+        _ => [of_v, of_k],
+    };
+    let errors = in_order([
         slope_of_v.abs() * off + POINTS as f64 * noise(&v),
         POINTS as f64 * noise(&k) + 0.5 * bend.abs() * off * off,
-    ];
+    ]);
     inside.then(|| Stationary {
         errors,
         s: width * x,
-        at: [value(&v, x).0, top],
+        at: in_order([value(&v, x).0, top]),
         period: value(&t, x).0,
         bend,
     })

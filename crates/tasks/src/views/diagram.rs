@@ -1,9 +1,9 @@
 //! Bifurcation diagrams, and curves in the plane of V_H and K.
 
-use super::labels::{colour_name, distinct, meanings, named_strokes};
+use super::labels::{colour_name, distinct, meanings, named_strokes, with_hopf_points};
 use crate::scene::{BranchParameter, Quantity, System, Units};
 use twinslip::bifurcation::{BranchRow, Label, LocusRow, Parameter, Special};
-use twinslip::equilibrium::{Symmetry, Verdict};
+use twinslip::equilibrium::{Solver, Symmetry, Verdict, steady_states};
 use twinslip::orbit::InterfaceSystem;
 use twinslip_output::plot::{Axis, Drawing, Mark, Panel, PlotSeries, Stroke};
 use twinslip_output::seven_digits;
@@ -12,15 +12,47 @@ use twinslip_output::seven_digits;
 const ALIKE: usize = 0;
 const APART: usize = 1;
 
-/// Stress against the parameter, of orbits the least and the largest, with the period beside.
+/// A Hopf point as a row of orbits, of which the least and the largest stress are one.
+fn at_hopf(special: &Special, slab: &InterfaceSystem) -> Option<BranchRow> {
+    let symmetry = special.symmetry.filter(|_| special.label == Label::Hb)?;
+    let driving = special.driving.value;
+    let found = steady_states(&slab.law, driving, slab.interfaces, Solver::Newton).ok()?;
+    let mut all = found.equilibria.iter();
+    let there = all.find(|one| one.symmetry == symmetry)?;
+    let [first, last] = [0, there.log_state.len() - 1];
+    Some(BranchRow {
+        branch: special.branch,
+        symmetry,
+        driving,
+        stiffness: special.stiffness.value,
+        stress: there.stress.value,
+        stress_range: (there.stress.value, there.stress.value),
+        period: special.period.map(|period| period.value),
+        state: [first, last].map(|i| there.log_state[i].exp()),
+        slip_rate: [first, last].map(|i| there.slip_rate[i]),
+        ln_abs_multiplier: [None; 2],
+        verdict: Verdict::Undecided,
+        label: Some(Label::Hb),
+    })
+}
+
+/// Stress against the parameter, of orbits the least and the largest, with the period beside and the Hopf points at their ends.
 pub fn branches(
     rows: &[BranchRow],
+    special: &[Special],
     along: &BranchParameter,
     slab: &InterfaceSystem,
     system: &System,
 ) -> Drawing {
     let units = &system.units;
     let orbits = rows.iter().any(|row| row.period.is_some());
+    let rows = &match orbits {
+        true => {
+            let numbers = (|row: &BranchRow| row.branch, |one: &Special| one.branch);
+            with_hopf_points(rows, special, numbers, |one| at_hopf(one, slab))
+        }
+        false => rows.to_vec(),
+    };
     let stress = |x| units.outward(Quantity::Stress, x);
     let least = |row: &BranchRow| stress(row.stress_range.0);
     let most = |row: &BranchRow| stress(row.stress_range.1);

@@ -1,7 +1,7 @@
 //! Diagrams of branches, and of curves, in any parameters.
 
 use super::diagram::{axis_label, symmetry_colour, symmetry_name, value};
-use super::labels::{colour_name, distinct, meanings_of, named_strokes};
+use super::labels::{colour_name, distinct, meanings_of, named_strokes, with_hopf_points};
 use crate::scene::{
     Free, GeneralBranchPlan, GeneralLocusPlan, GeneralRow, Quantity, RowKind, Subject, Units,
 };
@@ -216,27 +216,13 @@ fn drawn(subject: &dyn Subject, kind: RowKind) -> Vec<(String, Quantity, Vec<usi
     pairs
 }
 
-/// The rows of branches of orbits with the Hopf points at their ends, where the least and the largest of each number are one.
-fn with_hopf_points(
-    rows: &[GeneralRow],
-    special: &[GeneralRow],
-    numbers: usize,
-) -> Vec<GeneralRow> {
-    let mut all = Vec::new();
-    for branch in rows.chunk_by(|a, b| a.number == b.number) {
-        let mut of_branch = special.iter().filter(|one| one.number == branch[0].number);
-        let end = |row: Option<&GeneralRow>| {
-            let mut end = row.filter(|row| row.label == Some(Label::Hb))?.clone();
-            if 2 * end.numbers.len() == numbers {
-                end.numbers = end.numbers.iter().flat_map(|&x| [x, x]).collect();
-            }
-            (end.numbers.len() == numbers).then_some(end)
-        };
-        all.extend(end(of_branch.next()));
-        all.extend_from_slice(branch);
-        all.extend(end(of_branch.next_back()));
+/// A Hopf point as a row of orbits with so many numbers, of which the least and the largest are one.
+fn at_hopf(special: &GeneralRow, numbers: usize) -> Option<GeneralRow> {
+    let mut row = (special.label == Some(Label::Hb)).then(|| special.clone())?;
+    if 2 * row.numbers.len() == numbers {
+        row.numbers = row.numbers.iter().flat_map(|&x| [x, x]).collect();
     }
-    all
+    (row.numbers.len() == numbers).then_some(row)
 }
 
 /// Every number against the parameter, and the period of orbits.
@@ -256,7 +242,10 @@ pub fn general_branches(
     };
     let numbers = plan.subject.numbers(plan.kind).len();
     let rows = &match plan.kind.orbits {
-        true => with_hopf_points(rows, special, numbers),
+        true => {
+            let number = |row: &GeneralRow| row.number;
+            with_hopf_points(rows, special, (number, number), |one| at_hopf(one, numbers))
+        }
         false => rows.to_vec(),
     };
     let mut panels = Vec::new();

@@ -73,6 +73,25 @@ pub(super) fn meanings_of<'a>(labels: impl Iterator<Item = (Label, &'a str)>) ->
         .collect()
 }
 
+/// The rows of branches of orbits with the Hopf points at their ends. Rows and special points have the numbers of their branches; `at_hopf` makes a row of a
+/// special point that is a Hopf point.
+pub(super) fn with_hopf_points<R: Clone, S>(
+    rows: &[R],
+    special: &[S],
+    numbers: (impl Fn(&R) -> usize, impl Fn(&S) -> usize),
+    at_hopf: impl Fn(&S) -> Option<R>,
+) -> Vec<R> {
+    let mut all = Vec::new();
+    for branch in rows.chunk_by(|a, b| numbers.0(a) == numbers.0(b)) {
+        let number = numbers.0(&branch[0]);
+        let mut of_branch = special.iter().filter(|one| numbers.1(one) == number);
+        all.extend(of_branch.next().and_then(&at_hopf));
+        all.extend_from_slice(branch);
+        all.extend(of_branch.next_back().and_then(&at_hopf));
+    }
+    all
+}
+
 /// An entry of the legend for all curves of a colour, whatever their strokes: a curve without points.
 pub(super) fn colour_name(name: impl Into<String>, colour: usize) -> PlotSeries {
     PlotSeries::new(name, Vec::new(), Vec::new()).colour(colour)

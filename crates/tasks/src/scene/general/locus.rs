@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use std::ops::ControlFlow;
 use twinslip::bifurcation::equilibria::generic_curve::EquilibriumBifurcation;
 use twinslip::bifurcation::general::{
-    GeneralBifurcation, GeneralCurve, GeneralEvent, GeneralSystem,
+    Classified, GeneralBifurcation, GeneralCurve, GeneralEvent, GeneralSystem,
 };
 use twinslip::error::{Error, Result};
 use twinslip::integrate::Choice;
@@ -304,7 +304,12 @@ impl<'s> GeneralLocusPlan<'s> {
             beyond: self.free.each_ref().map(Free::beyond),
             at: self.free.each_ref().map(Free::landings),
             orbit,
-            criticality: self.criticality,
+            seeds: None,
+            symmetry: None,
+            criticality: match self.criticality {
+                true => Classified::Every,
+                false => Classified::Special,
+            },
             following: general(&self.following, known),
         };
         let (mut failed, mut met) = (None, 0);

@@ -1,0 +1,99 @@
+//! Degenerate Hopf points, to which curves of folds of orbits shrink.
+//!
+//! Beside one the fold's condition is a small power of the orbit's size, and soon rounding.
+
+use super::half_curve::CurvesOfKind;
+use crate::bifurcation::Label;
+use crate::bifurcation::equilibria::generic_curve::EquilibriumBifurcation;
+use crate::bifurcation::general::curves::equilibrium_curves;
+use crate::bifurcation::general::{
+    GeneralCurve, GeneralEvent, GeneralFollowing, GeneralPoint, GeneralSolution,
+};
+use crate::field::Vector;
+use crate::orbit::{ContinuationPoint, ShootingNodes, TestFunction};
+use std::ops::ControlFlow::Continue;
+use std::sync::OnceLock;
+
+/// A curve of folds of orbits this much smaller than the largest shrinks to an equilibrium.
+const SHRUNK: f64 = 0.05;
+
+/// Those in the ranges of a curve, as orbits that have shrunk to a point, once they were asked for.
+#[derive(Debug, Default)]
+pub(super) struct DegenerateHopfPoints(OnceLock<Vec<GeneralPoint>>);
+
+impl CurvesOfKind<'_, '_> {
+    /// The degenerate Hopf point to which a curve of folds shrinks, by an orbit among all states and how far each variable goes on the largest one.
+    pub fn shrinks_to(
+        &self,
+        number: usize,
+        orbit: &ContinuationPoint,
+        largest: &Vector,
+    ) -> Option<GeneralPoint> {
+        /// Of the ranges, and of the period; and of how far the orbit goes.
+        const NEAR: f64 = 0.05;
+        const BESIDE: f64 = 2.0;
+        let ContinuationPoint { shooting, at } = orbit;
+        let extents = shooting.extents();
+        let is_small = || {
+            extents
+                .iter()
+                .zip(largest)
+                .all(|(x, most)| *x < SHRUNK * most)
+        };
+        if self.test_function != TestFunction::Fold || !is_small() {
+            return None;
+        }
+        let ranges = self.curve.ranges;
+        let near = |point: &&GeneralPoint| {
+            let GeneralSolution::Orbit { shooting: rest, .. } = &point.solution else {
+                return false;
+            };
+            let off = |x: &Vector| (x - &rest.nodes[0]).component_div(&extents).amax();
+            let part = |i: usize| (point.at[i] - at[i]) / (ranges[i].1 - ranges[i].0);
+            let of_period = (shooting.period() / rest.period()).ln();
+            shooting.nodes.iter().all(|x| off(x) < BESIDE)
+                && [part(0), part(1), of_period]
+                    .iter()
+                    .all(|off| off.abs() < NEAR)
+        };
+        let all = self.degenerate.0.get_or_init(|| found(self.curve));
+        Some(GeneralPoint {
+            number,
+            symmetry: self.chart.symmetry(),
+            ..all.iter().find(near)?.clone()
+        })
+    }
+}
+
+fn found(curve: &GeneralCurve<'_>) -> Vec<GeneralPoint> {
+    let mut found = Vec::new();
+    let mut look = |event| {
+        if let GeneralEvent::Row(point) = event
+            && point.label == Some(Label::Gh)
+            && let GeneralSolution::Equilibrium { state, .. } = &point.solution
+            && let Some(period) = point.period
+        {
+            let log_multipliers = vec![0.0; state.len() - 1];
+            let shooting = ShootingNodes {
+                nodes: vec![state.clone()],
+                durations: vec![period.value],
+            };
+            let solution = GeneralSolution::Orbit {
+                shooting,
+                log_multipliers,
+                neutral: 0.0,
+            };
+            found.push(GeneralPoint { solution, ..point });
+        }
+        Continue(())
+    };
+    let curve = GeneralCurve {
+        following: GeneralFollowing {
+            skip: Vec::new(),
+            ..curve.following.clone()
+        },
+        ..curve.clone()
+    };
+    let all = equilibrium_curves(&curve, EquilibriumBifurcation::Hopf, &mut look);
+    all.map_or_else(|_| Vec::new(), |()| found)
+}
