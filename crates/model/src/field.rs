@@ -95,7 +95,7 @@ pub trait VectorField<const N: usize>: Send + Sync {
         None
     }
 
-    /// Whether runs go on through spikes that last for less than the spacing of the doubles around their time. Those of interfaces end there:
+    /// Whether implicit methods go on through spikes that last for less than the spacing of the doubles around their time. Runs of interfaces end there:
     /// CVODES can't be held to the others behind one, as it keeps time in a double and has been seen to leave a spike anywhere.
     fn has_spikes(&self) -> bool {
         true

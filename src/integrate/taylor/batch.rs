@@ -2,7 +2,7 @@
 
 use super::super::{Control, Step, Tolerances, Work, step_underflow};
 use super::Taylor;
-use super::way::{Clock, Tick};
+use super::way::Clock;
 use crate::error::{Error, Result};
 use crate::field::State;
 use crate::friction::AnyLaw;
@@ -224,7 +224,7 @@ impl Batch {
         runs: &[BatchRun],
     ) -> Fate {
         let before = seat.clock.now.hi();
-        if seat.clock.tick(h.into(), seat.remaining) != Tick::Seen {
+        if !seat.clock.tick(h.into(), seat.remaining) {
             let h = if h.is_finite() { h } else { 0.0 };
             let h = h.copysign(seat.remaining.hi());
             let here = State::from(batch_solution.state(lane));

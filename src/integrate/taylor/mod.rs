@@ -12,7 +12,7 @@ mod way;
 
 pub use batch::{Batch, BatchObserver, BatchRun};
 
-use super::{Control, Integrator, Observer, Step, Tolerances, Work, may_be_spike, step_underflow};
+use super::{Control, Integrator, Observer, Step, Tolerances, Work, step_underflow};
 use crate::error::{Error, Result};
 use crate::field::{Analytic, Jacobian, State, VectorField, checked_places};
 use crate::number::DoubleDouble;
@@ -21,7 +21,7 @@ use crate::series::{
     usual_order,
 };
 use std::cell::LazyCell;
-use way::{Clock, Tick, Unseen, Way};
+use way::{Clock, Unseen, Way};
 
 /// A Taylor integrator. A step may err by `atol + rtol |tau|` in tau, and in psi by `atol + rtol` of itself.
 ///
@@ -309,11 +309,7 @@ impl Taylor {
         observer: &mut Option<Observer<'_, N>>,
         halt: Halt<'_, N>,
     ) -> Result<()> {
-        /// Steps within a spike after which it is looked at again: it may be a singularity after all.
-        const WITHIN_SPIKE: usize = 64;
         let mut expansion = Expansion::new();
-        // Steps since one that changed the double next to the time.
-        let mut short_steps = 0;
         while let Some(remaining) = clock.remaining() {
             if self.work.steps == self.max_steps {
                 return Err(Error::TooManySteps {
@@ -331,19 +327,11 @@ impl Taylor {
             // Also of what fails.
             self.work.rejected = solution.rejected();
             let (begin, before) = (clock.now, clock.now.hi());
-            let ticked = clock.tick(h, remaining);
-            short_steps = match ticked {
-                Tick::Seen => 0,
-                _ => short_steps + 1,
-            };
-            if ticked == Tick::None || short_steps % WITHIN_SPIKE == 1 {
+            if !clock.tick(h, remaining) {
                 let h = if h.is_finite() { h.hi() } else { 0.0 };
                 let h = h.copysign(remaining.hi());
                 let here = State::from(solution.state());
-                let why = step_underflow(field, before, h, &here);
-                if ticked == Tick::None || !field.has_spikes() || !may_be_spike(&why) {
-                    return Err(why);
-                }
+                return Err(step_underflow(field, before, h, &here));
             }
             self.work.steps += 1;
             // One evaluation of the law for each coefficient.

@@ -24,11 +24,11 @@ impl Clock {
         (remaining.hi() != 0.0).then_some(remaining)
     }
 
-    /// Goes on by h, if time can.
-    pub fn tick(&mut self, h: DoubleDouble, remaining: DoubleDouble) -> Tick {
+    /// Goes on by h, or says that time can't.
+    pub fn tick(&mut self, h: DoubleDouble, remaining: DoubleDouble) -> bool {
         if h.hi() == remaining.hi() {
             self.now = DoubleDouble::from(self.end);
-            return Tick::Seen;
+            return true;
         }
         // Runs in doubles take many a step: the short sum is as exact.
         let next = if h.lo() == 0.0 {
@@ -37,24 +37,12 @@ impl Clock {
             self.now + h
         };
         // Nor is a step that is no number any progress.
-        if !next.is_finite() || next == self.now {
-            return Tick::None;
+        if !next.is_finite() || next.hi() == self.now.hi() {
+            return false;
         }
-        let is_seen = next.hi() != self.now.hi();
         self.now = next;
-        if is_seen { Tick::Seen } else { Tick::Unseen }
+        true
     }
-}
-
-/// By how much a step has changed the time.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Tick {
-    /// The double next to it is another one.
-    Seen,
-    /// It has changed within the spacing of doubles.
-    Unseen,
-    /// Not at all, or the step is no number.
-    None,
 }
 
 /// Where a run has come to: the time, the state at the end of the last step seen, and what there was since.
