@@ -91,12 +91,16 @@ fn wrong_sections_are_refused() {
     let section = |change: &str| {
         format!("section --driving 0.1 --stiffness 0.2 --skip 5 --returns 5 {change}")
     };
-    for surface in ["10", "stress=", "stress=high", "stress=nan", "state=1"] {
+    for surface in ["10", "stress=", "stress=high", "stress=nan"] {
         refused(
             &section(&format!("--surface {surface}")),
-            &format!("--surface \"{surface}\" must be stress=auto or stress=VALUE"),
+            &format!("--surface \"{surface}\" must be stress=auto or STATE=VALUE"),
         );
     }
+    refused(
+        &section("--surface state=1"),
+        "the state of --surface is state, but must be",
+    );
     refused(
         &section("--patience 0"),
         "patience is 0, but must be positive",

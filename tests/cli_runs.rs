@@ -121,6 +121,38 @@ fn a_reader_who_leaves_is_no_error() {
     assert_eq!(String::from_utf8_lossy(&ended.stderr), "");
 }
 
+/// The last return before a run comes to rest has a row too, and no next one.
+#[test]
+fn every_return_has_a_row() {
+    let ended = twinslip(
+        "section --driving 1 --stiffness 0.45 --interfaces 1 --start near-symmetric:0.3 --skip 0 --returns 200 --format csv",
+    );
+    assert_eq!(ended.code, 0, "{}", ended.err);
+    let rows = ended.out.lines().filter(|line| !line.starts_with('#'));
+    // One line is the header.
+    let count = rows.count() - 1;
+    let said = format!(" {count} returns: steady");
+    assert!(count > 9 && ended.err.contains(&said), "{}", ended.err);
+}
+
+/// The section of a state is told in the numbers of that state.
+#[test]
+fn a_state_that_is_not_met_is_told_by_its_logarithm() {
+    let ended = twinslip(
+        "section --driving 10 --stiffness 0.14 --surface log_state_1=-20 --patience 50 --format csv",
+    );
+    assert_eq!(ended.code, 1, "{}", ended.err);
+    assert!(ended.err.contains("lies at -20"), "{}", ended.err);
+    let si = twinslip(
+        "section --si --driving 1e-5 --stiffness 5e9 --surface log_state_1=-20 --patience 50 --format csv",
+    );
+    assert!(
+        si.err.contains("lies at -20;") && si.err.contains(" s: "),
+        "{}",
+        si.err
+    );
+}
+
 /// A run that never comes to the surface ends with status 1, says where it has been, and keeps the header.
 #[test]
 fn a_surface_that_is_not_met_is_told() {

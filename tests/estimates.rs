@@ -43,15 +43,18 @@ fn measured(arguments: &str) -> Option<(f64, f64)> {
     let plan = Plan::new(&<Line as clap::Parser>::parse_from(words).options).ok()?;
     let mut last = Last(Vec::new());
     let estimate = run(&plan, &mut last).unwrap().error_estimate?;
-    let (tau, [first, second]) = plan.start;
-    let (law, loading) = (plan.system.law, plan.loading);
-    let error = if plan.dimension.number() == 2 {
-        let field = symmetric(law, loading);
-        error::<2>(&*field, State::<2>::new(tau, first), plan.until, &last.0)
-    } else {
-        let field = two_interfaces(law, loading);
-        let start = State::<3>::new(tau, first, second);
-        error::<3>(&*field, start, plan.until, &last.0)
+    let (system, loading) = plan.system.closed_forms().expect("a built-in law");
+    let error = match *plan.start.as_slice() {
+        [tau, first] => {
+            let field = symmetric(system.law, loading);
+            error::<2>(&*field, State::<2>::new(tau, first), plan.until, &last.0)
+        }
+        [tau, first, second] => {
+            let field = two_interfaces(system.law, loading);
+            let start = State::<3>::new(tau, first, second);
+            error::<3>(&*field, start, plan.until, &last.0)
+        }
+        _ => panic!("one or two states"),
     };
     Some((error, estimate))
 }

@@ -129,7 +129,7 @@ fn what_makes_no_sense_with_a_system_is_refused() {
     }
     refused_in_one_line(
         "integrate --system lorenz --until 1 --events",
-        "of interfaces with a built-in law",
+        "stick-slip events of one or two interfaces",
     );
     refused_in_one_line("law --system lorenz", "this command is for interfaces");
     refused_in_one_line(

@@ -136,8 +136,14 @@ fn orbits_are_those_of_the_built_in_law() {
         let (made, known) = (orbit(&file), orbit("spinodal"));
         for (made_at, known_at) in [
             ("period/value", "period/value"),
-            ("extremes/stress/min/value", "stress_min/value"),
+            ("stress_min/value", "stress_min/value"),
+            ("stress_max/value", "stress_max/value"),
+            ("state_min", "state_min"),
             ("extremes/stress/max/value", "stress_max/value"),
+            (
+                "extremes/log_state_1/min/value",
+                "extremes/log_state_1/min/value",
+            ),
         ] {
             near(
                 number(&made, &format!("/result/orbit/{made_at}")),
@@ -145,6 +151,12 @@ fn orbits_are_those_of_the_built_in_law() {
                 1e-12,
             );
         }
+        let rate = "/result/orbit/slip_rate_max";
+        near(number(&made, rate) / number(&known, rate), 1.0, 1e-10);
+        assert_eq!(
+            made["result"]["orbit"]["symmetry"],
+            known["result"]["orbit"]["symmetry"]
+        );
         let ln_abs = "/result/orbit/log_multipliers/0/ln_abs/value";
         near(number(&made, ln_abs), number(&known, ln_abs), 1e-9);
         assert_eq!(
@@ -157,19 +169,81 @@ fn orbits_are_those_of_the_built_in_law() {
 #[test]
 fn returns_are_those_of_the_built_in_law() {
     let file = law("spinodal");
-    let section = |law: &str| -> Value {
+    let section = |law: &str, surface: &str| -> Value {
         let ended = twinslip(&format!(
-            "section --law {law} --driving 10 --stiffness 0.14 --returns 5 --skip 0 --rtol 1e-15 --format json -q"
+            "section --law {law} --driving 10 --stiffness 0.14 --surface {surface} --returns 5 --skip 0 --rtol 1e-15 --format json -q"
         ));
         // So few returns leave the regime undecided.
         assert_eq!(ended.code, 3, "{}", ended.err);
         serde_json::from_str(&ended.out).expect("JSON")
     };
-    let (made, known) = (section(&file), section("spinodal"));
     let rows = |made: &Value| made["result"]["rows"].as_array().cloned().expect("rows");
-    assert_eq!(rows(&made).len(), 5);
-    for (made, known) in rows(&made).iter().zip(&rows(&known)) {
-        alike(made, known, 1e-10, &["time", "log_state_1", "log_state_2"]);
+    for surface in ["stress=auto", "stress=9.7", "log_state_1=-6"] {
+        let (made, known) = (section(&file, surface), section("spinodal", surface));
+        assert_eq!(rows(&made).len(), 5);
+        assert_eq!(
+            made["numerics"]["surface_stress"].is_number(),
+            surface != "log_state_1=-6"
+        );
+        for (made, known) in rows(&made).iter().zip(&rows(&known)) {
+            let names = |row: &Value| -> Vec<String> {
+                let row = row.as_object().expect("a row");
+                row.keys().cloned().collect()
+            };
+            assert_eq!(names(made), names(known));
+            let columns = [
+                "n",
+                "time",
+                "stress",
+                "log_state_1",
+                "log_state_2",
+                "slip_rate_1",
+                "slip_rate_sum",
+                "next_slip_rate_sum",
+            ];
+            alike(made, known, 1e-9, &columns);
+        }
+    }
+}
+
+#[test]
+fn events_are_those_of_the_built_in_law() {
+    let file = law("spinodal");
+    for (interfaces, method) in [(1, "taylor"), (2, "taylor"), (2, "rodas5p")] {
+        let run = |law: &str| {
+            object(&format!(
+                "integrate --law {law} --interfaces {interfaces} --driving 10 --stiffness 0.14 --until 9 --program 8:3 --events --rtol 1e-12 --method {method} --final-only"
+            ))
+        };
+        let events = |made: Value| made["result"]["events"].as_array().cloned();
+        let (made, known) = (events(run(&file)), events(run("spinodal")));
+        let (made, known) = (made.expect("events"), known.expect("events"));
+        assert!(known.len() > 1 && made.len() == known.len(), "{made:?}");
+        for (made, known) in made.iter().zip(&known) {
+            let columns = [
+                "onset",
+                "duration",
+                "stress_drop",
+                "peak_slip_rate",
+                "slip_1",
+            ];
+            alike(made, known, 1e-6, &columns);
+            assert_eq!(made["leader"], known["leader"]);
+        }
+    }
+}
+
+/// An absolute error by 1 of ln psi is a factor of e, of whatever law.
+#[test]
+fn tolerances_are_those_of_built_in_laws() {
+    for command in ["integrate --until 1", "section", "orbit"] {
+        for law in [law("spinodal"), "spinodal".into()] {
+            let ended = twinslip(&format!(
+                "{command} --law {law} --driving 10 --stiffness 0.14 --atol 2"
+            ));
+            assert_eq!(ended.code, 2, "{}", ended.out);
+            assert!(ended.err.contains("atol is 2"), "{}", ended.err);
+        }
     }
 }
 

@@ -189,8 +189,8 @@ fn what_has_no_meaning_for_a_law_from_a_file_is_refused() {
             "--set: no parameter `beta`; known are driving, stiffness",
         ),
         (
-            format!("{run} --events"),
-            "of interfaces with a built-in law",
+            format!("{run} --clusters 1,1,1 --events --format json"),
+            "or of three and more with a built-in law",
         ),
         (
             format!("{run} --start 1,2"),

@@ -5,7 +5,7 @@ use std::path::Path;
 use twinslip::field::State;
 use twinslip::friction::AnyLaw;
 use twinslip::model::{Driven, Loading, two_interfaces};
-use twinslip_tasks::scene::{Dimension, IntegrateOptions, Plan, SceneFile};
+use twinslip_tasks::scene::{IntegrateOptions, Plan, SceneFile};
 
 /// The scenes of every comparison, from easy to odd: stick-slip at three driving velocities, soft systems, the torus, a
 /// strongly damped and a stiff relaxation, and the other law.
@@ -58,13 +58,15 @@ impl Problem {
             Plan::new(&options)
         };
         let plan = read().unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-        assert_eq!(plan.dimension, Dimension::Full, "{name} is not in 3-D");
-        let (tau, [w1, w2]) = plan.start;
+        let [tau, w1, w2] = plan.start.as_slice() else {
+            panic!("{name} is not in 3-D");
+        };
+        let (system, loading) = plan.system.closed_forms().expect("a built-in law");
         Problem {
             name: name.to_owned(),
-            law: plan.system.law,
-            loading: plan.loading,
-            start: State::<3>::new(tau, w1, w2),
+            law: system.law,
+            loading,
+            start: State::<3>::new(*tau, *w1, *w2),
             until: plan.until,
         }
     }

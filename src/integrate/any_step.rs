@@ -29,6 +29,7 @@ pub struct AnyStep<'a> {
     pub length: f64,
     continuous: &'a dyn Fn(f64) -> Vector,
     series: &'a dyn Fn() -> Option<&'a dyn StepSeries>,
+    slips: &'a dyn Fn() -> Option<[DoubleDouble; 2]>,
 }
 
 impl<'a> AnyStep<'a> {
@@ -50,6 +51,7 @@ impl<'a> AnyStep<'a> {
                 Vector::from_column_slice(&step.after(time).as_slice()[..variables])
             },
             series: &|| step.series().map(|series| series as &dyn StepSeries),
+            slips: &|| step.slips(),
         })
     }
 
@@ -90,6 +92,11 @@ impl<'a> AnyStep<'a> {
     /// As [`Step::since_begin`].
     pub fn since_begin(&self, t: f64) -> f64 {
         since((self.begin, self.t1, self.length), t)
+    }
+
+    /// As [`Step::slips`].
+    pub fn slips(&self) -> Option<[DoubleDouble; 2]> {
+        (self.slips)()
     }
 
     /// The series at `t0`, of methods that step by one.

@@ -14,11 +14,11 @@ use twinslip::error::{Error, Result};
 use twinslip_output::{Format, Over, Place, RowList, object, plot, seven_digits};
 use twinslip_tasks::scene::{
     Change, Described, FaultSummary, IntegrateOptions, Keeping, ManyPlan, OutputOptions, Plan,
-    Program, Quantity, RunOutcome, TextModel, TextPlan, explain,
+    Program, Quantity, RunOutcome, explain,
 };
 use twinslip_tasks::views::{self, Listed, Listing};
 
-/// A run that is planned, of interfaces or of a user-defined system.
+/// A run that is planned, of a system or of many interfaces.
 pub trait PlannedRun {
     /// The plan in words.
     fn explain(&self, keeping: Keeping) -> String;
@@ -41,8 +41,8 @@ pub trait PlannedRun {
     /// How V_H changes on the way, where it does.
     fn program(&self) -> Option<&Program>;
     /// The states whose errors are estimated each.
-    fn states(&self) -> &[&'static str] {
-        &[]
+    fn states(&self) -> Vec<Cow<'static, str>> {
+        Vec::new()
     }
     /// Whether anything is seen between start and end.
     fn observed(&self) -> bool;
@@ -80,16 +80,7 @@ pub fn run(options: &IntegrateOptions, call: &Call) -> Result<Ending> {
             "`checkpoint` works only for runs of many interfaces: 8 or more without clusters, or with `draw`".into(),
         ));
     }
-    // A program may say itself which V_H is the first.
-    let free: &[&str] = if options.program.is_some() {
-        &["driving"]
-    } else {
-        &[]
-    };
-    match TextModel::in_time(&options.model, free)? {
-        Some(model) => integrate(&TextPlan::new(options, model)?, options, call),
-        None => integrate(&Plan::new(options)?, options, call),
-    }
+    integrate(&Plan::new(options)?, options, call)
 }
 
 impl PlannedRun for Plan {
@@ -106,10 +97,10 @@ impl PlannedRun for Plan {
             "method": self.method.name(),
             "asked": self.asked_method,
             "rtol": self.tolerances.rtol,
-            "atol": self.tolerances.atol,
-            "max_step": self.system.units.max_step(self.tolerances),
+            "atol": self.told_atol(),
+            "max_step": self.system.units().max_step(self.tolerances),
             "max_steps": self.max_steps,
-            "dimension": self.dimension.number(),
+            "dimension": self.start.len(),
         })
     }
 
@@ -123,9 +114,9 @@ impl PlannedRun for Plan {
 
     fn beside<'a>(&'a self, outcome: &'a RunOutcome) -> Beside<'a> {
         let events = self.events.map(|_| Listed {
-            columns: views::event_columns(self.system.interfaces),
+            columns: views::event_columns(self.system.clusters().len()),
             rows: Cow::Borrowed(&*outcome.events),
-            units: &self.system.units,
+            units: self.system.units(),
         });
         Beside {
             events: events.map(|events| Box::new(events) as _),
@@ -139,6 +130,10 @@ impl PlannedRun for Plan {
 
     fn program(&self) -> Option<&Program> {
         self.program.as_ref()
+    }
+
+    fn states(&self) -> Vec<Cow<'static, str>> {
+        self.system.states()
     }
 
     fn observed(&self) -> bool {
@@ -366,8 +361,7 @@ fn result<'a>(
     let last = outcome.last.as_ref().map(|row| {
         let mut last = object(&rows.columns, row);
         last.insert("error_estimate".into(), json!(outcome.error_estimate));
-        let states = plan.states().iter();
-        for (state, error) in states.zip(outcome.errors.iter().flatten()) {
+        for (state, error) in plan.states().iter().zip(outcome.errors.iter().flatten()) {
             last.insert(format!("{state}_uncertainty"), json!(error));
         }
         last

@@ -3,37 +3,26 @@
 use super::Ending;
 use super::call::Call;
 use super::report::{self, Report};
-use super::text;
 use serde_json::{Map, Value, json};
 use twinslip::error::{Error, Result};
 use twinslip::friction::ExtremumKind;
 use twinslip::number::Uncertain;
 use twinslip_output::Format;
 use twinslip_tasks::scene::{
-    Column, Described, LawCurve, LawOptions, LawPlan, Quantity, TextModel, Together, Units,
+    Column, LawCurve, LawOptions, LawPlan, LawPoint, Quantity, Together, Units,
 };
 use twinslip_tasks::views;
 
 pub fn run(options: &LawOptions, call: &Call) -> Result<Ending> {
-    match TextModel::of(&options.model, &["driving", "stiffness"])? {
-        Some(model) if model.slab.is_some() => return text::law::run(options, model, call),
-        _ => {}
-    }
     let plan = LawPlan::new(options)?;
     let outputs = (&options.output, options.plot.as_deref());
     let report = report::begun(outputs, call, || plan.explain())?;
-    let curves = plan.curves()?;
+    let (curves, failure) = plan.curves()?;
     if let Some(path) = &options.plot {
-        report.draw(path, &views::picture_of_law(&plan.system.units, &curves))?;
+        report.draw(path, &views::picture_of_law(plan.system().units(), &curves))?;
     }
-    let columns = views::law_columns(curves.len() > 1);
-    write(
-        &report,
-        &plan.system,
-        &columns,
-        (&curves, plan.together),
-        None,
-    )
+    let ending = write(&plan, &report, &curves, failure.as_ref())?;
+    failure.map_or(Ok(ending), Err)
 }
 
 /// What laws are known by, in the user's units; of two interfaces each with its number.
@@ -44,7 +33,7 @@ struct Landmarks {
 }
 
 impl Landmarks {
-    fn of<R>(curves: &[LawCurve<R>], units: &Units) -> Self {
+    fn of(curves: &[LawCurve], units: &Units) -> Self {
         let out = |quantity, x| report::uncertain(units, quantity, x);
         let mut all = Landmarks {
             extrema: Vec::new(),
@@ -150,13 +139,13 @@ fn kind(kind: ExtremumKind) -> &'static str {
 
 /// What interfaces do that slide together at V_H, of each law. To each of N interfaces that move alike the spring is N K stiff; where that
 /// is more than the critical stiffness, their steady sliding is stable to what moves them alike.
-fn at_driving<R>(
-    curves: &[LawCurve<R>],
+fn at_driving(
+    curves: &[LawCurve],
     together: Together,
-    columns: &[Column<R>],
+    columns: &[Column<LawPoint>],
     units: &Units,
 ) -> Vec<Map<String, Value>> {
-    let object = |curve: &LawCurve<R>| {
+    let object = |curve: &LawCurve| {
         let mut object = views::object(columns, curve.together.as_ref()?, units);
         if let Some(stiffness) = together.stiffness {
             let stiffness = units.outward(Quantity::Stiffness, stiffness);
@@ -169,14 +158,15 @@ fn at_driving<R>(
     curves.iter().filter_map(object).collect()
 }
 
-pub fn write<R>(
+fn write(
+    plan: &LawPlan,
     report: &Report<'_>,
-    system: &dyn Described,
-    columns: &[Column<R>],
-    (curves, together): (&[LawCurve<R>], Option<Together>),
+    curves: &[LawCurve],
     failure: Option<&Error>,
 ) -> Result<Ending> {
+    let (system, together) = (plan.system(), plan.together);
     let units = system.units();
+    let columns = &views::law_columns(curves.len() > 1)[..];
     let landmarks = Landmarks::of(curves, units);
     let at_driving = together
         .filter(|all| all.slip_rate.is_some())

@@ -6,93 +6,18 @@ use super::report::{self, Report};
 use super::stream::StreamOut;
 use super::words::{count, several};
 use super::{Ending, progress, written};
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 use std::path::Path;
 use twinslip::equilibrium::Verdict;
 use twinslip::error::{Error, Result};
 use twinslip::number::Uncertain;
-use twinslip::orbit::{Crosscheck, FoundOrbit, Kind, Multiplier, Orbit, OrbitAccuracy};
+use twinslip::orbit::{Crosscheck, FoundOrbit, Kind, Multiplier, Orbit};
 use twinslip_output::{Format, RowList, plot};
-use twinslip_tasks::scene::{
-    Column, Described, OrbitOptions, OrbitPlan, Plan, Quantity, System, TextModel, TextOrbitPlan,
-    Units,
-};
+use twinslip_tasks::scene::{Described, OrbitOptions, OrbitPlan, Quantity, Units};
 use twinslip_tasks::views;
 
-/// A search for a periodic orbit, of interfaces or of a user-defined system.
-pub trait OrbitSearch {
-    /// The run along an orbit.
-    type Run: PlannedRun;
-    /// The plan in words.
-    fn explain(&self) -> String;
-    /// What the orbit is of.
-    fn system(&self) -> &dyn Described;
-    /// By which method an orbit was computed, and by which second one.
-    fn accuracy(&self, orbit: &Orbit) -> (OrbitAccuracy, Option<OrbitAccuracy>);
-    /// What a state may err by in a step beside its relative error: one number, or one for each state.
-    fn absolute_tolerance(&self, accuracy: &OrbitAccuracy) -> Value {
-        json!(accuracy.tolerances.atol)
-    }
-    /// Whether there are to be rows.
-    fn has_rows(&self) -> bool;
-    fn find(&self) -> Result<FoundOrbit>;
-    fn crosscheck(&self, orbit: &Orbit) -> Result<Option<Crosscheck>>;
-    /// `None` where neither rows nor a picture are asked for.
-    fn along(&self, orbit: &Orbit) -> Option<Self::Run>;
-    /// The columns of orbits.
-    fn columns(&self) -> Vec<Column<Orbit>>;
-    /// An orbit as an object.
-    fn object(&self, orbit: &Orbit) -> Value;
-}
-
 pub fn run(options: &OrbitOptions, call: &Call) -> Result<Ending> {
-    match TextModel::of(&options.model, &[])? {
-        Some(model) => search(&TextOrbitPlan::new(options, model)?, options, call),
-        None => search(&OrbitPlan::new(options)?, options, call),
-    }
-}
-
-impl OrbitSearch for OrbitPlan {
-    type Run = Plan;
-
-    fn explain(&self) -> String {
-        self.explain()
-    }
-
-    fn system(&self) -> &dyn Described {
-        &self.system
-    }
-
-    fn accuracy(&self, _: &Orbit) -> (OrbitAccuracy, Option<OrbitAccuracy>) {
-        (self.accuracy, self.second)
-    }
-
-    fn has_rows(&self) -> bool {
-        self.rows.is_some()
-    }
-
-    fn find(&self) -> Result<FoundOrbit> {
-        self.find()
-    }
-
-    fn crosscheck(&self, orbit: &Orbit) -> Result<Option<Crosscheck>> {
-        self.crosscheck(orbit)
-    }
-
-    fn along(&self, orbit: &Orbit) -> Option<Plan> {
-        self.along(orbit)
-    }
-
-    fn columns(&self) -> Vec<Column<Orbit>> {
-        views::orbit_columns(self.system.interfaces)
-    }
-
-    fn object(&self, orbit: &Orbit) -> Value {
-        object(orbit, &self.system)
-    }
-}
-
-fn search(plan: &impl OrbitSearch, options: &OrbitOptions, call: &Call) -> Result<Ending> {
+    let plan = &OrbitPlan::new(options)?;
     let picture = options.plot.as_deref();
     picture.map(plot::PictureFormat::of).transpose()?;
     let others: Vec<&Path> = picture.into_iter().collect();
@@ -105,11 +30,11 @@ fn search(plan: &impl OrbitSearch, options: &OrbitOptions, call: &Call) -> Resul
     // Only the object tells of the second opinion: rows need not wait for it.
     let in_rows = report.format != Format::Json;
     let mut ending = Ending::Done;
-    if in_rows && !plan.has_rows() {
+    if in_rows && !plan.rows.is_some() {
         ending = write_orbits(plan, &report, &orbit, &others)?;
     }
     let rows = along(plan, &report, &orbit, picture)?;
-    let second = plan.accuracy(&orbit).1;
+    let second = plan.accuracies(&orbit).1;
     let second = second.map_or("", |second| second.method.name());
     let words = format!("once more, by {second}");
     let checked = progress::during(&report, &words, || plan.crosscheck(&orbit));
@@ -133,7 +58,7 @@ fn search(plan: &impl OrbitSearch, options: &OrbitOptions, call: &Call) -> Resul
         let result = result(plan, &orbit, &others, checked, rows.as_ref());
         ending = write_object(plan, &report, &orbit, result)?;
     }
-    report.say(summary(&orbit, checked.as_ref(), plan.system().units()));
+    report.say(summary(&orbit, checked.as_ref(), plan.system.units()));
     Ok(match ending {
         Ending::Done if orbit.verdict() == Verdict::Undecided => report.undecided(
             "the stability of the orbit, as ln |mu| of a multiplier is 0 within its error; other parameters decide, or a smaller `rtol`",
@@ -177,7 +102,7 @@ fn summary(orbit: &Orbit, checked: Option<&Crosscheck>, units: &Units) -> String
 /// Goes along the orbit for the rows and the picture that are asked for, and gives the rows; none where nobody asks for them, or reads
 /// them.
 fn along(
-    plan: &impl OrbitSearch,
+    plan: &OrbitPlan,
     report: &Report<'_>,
     orbit: &Orbit,
     picture: Option<&Path>,
@@ -186,9 +111,9 @@ fn along(
         return Ok(None);
     };
     let columns = run.columns();
-    let out = if plan.has_rows() {
-        let units = plan.system().units();
-        let mut remarks = report.remarks(plan.system(), &numerics(plan, orbit));
+    let out = if plan.rows.is_some() {
+        let units = plan.system.units();
+        let mut remarks = report.remarks(&plan.system, &numerics(plan, orbit));
         remarks.push(format!("orbit: {}", summary(orbit, None, units)));
         let columns = (columns, units);
         StreamOut::new(report, remarks, columns, false)
@@ -196,10 +121,10 @@ fn along(
         Ok(StreamOut::kept(report, columns))
     };
     let mut out = match out {
-        Ok(out) => out.drawing(run.pictured()),
+        Ok(out) => out.drawing(PlannedRun::pictured(&run)),
         Err(error) => return written(Err(error), &report.place).map(|_| None),
     };
-    let failure = run.run(&mut out)?.failure;
+    let failure = PlannedRun::run(&run, &mut out)?.failure;
     out.progress.finish();
     if let Some(error) = out.broken {
         return written(Err(error), &report.place).map(|_| None);
@@ -207,20 +132,20 @@ fn along(
     if let Some(path) = picture {
         report.draw(path, &run.picture(&out.drawn))?;
     }
-    if !plan.has_rows() {
+    if !plan.rows.is_some() {
         return failure.map_or(Ok(None), Err);
     }
     report.ended(failure.map_or(Ok(Ending::Done), Err))?;
     Ok(Some(out.rows))
 }
 
-fn numerics(plan: &impl OrbitSearch, orbit: &Orbit) -> Value {
-    let (accuracy, second) = plan.accuracy(orbit);
+fn numerics(plan: &OrbitPlan, orbit: &Orbit) -> Value {
+    let (accuracy, second) = plan.accuracies(orbit);
     json!({
         "method": orbit.method,
         "rtol": accuracy.tolerances.rtol,
-        "atol": plan.absolute_tolerance(&accuracy),
-        "max_step": plan.system().units().max_step(accuracy.tolerances),
+        "atol": plan.told_atol(&accuracy),
+        "max_step": plan.system.units().max_step(accuracy.tolerances),
         "max_steps": accuracy.max_steps,
         "crosscheck": second.map(|second| second.method.name()),
     })
@@ -228,16 +153,16 @@ fn numerics(plan: &impl OrbitSearch, orbit: &Orbit) -> Value {
 
 /// What the object holds.
 fn result(
-    plan: &impl OrbitSearch,
+    plan: &OrbitPlan,
     orbit: &Orbit,
     others: &[Orbit],
     (checked, unchecked): (Option<&Crosscheck>, Option<&str>),
     rows: Option<&RowList>,
 ) -> Value {
-    let mut main = plan.object(orbit);
+    let mut main = object(plan, orbit);
     main["crosscheck_note"] = json!(unchecked);
     main["crosscheck"] = checked.map_or(Value::Null, |checked| comparison(checked, plan));
-    let rest: Vec<Value> = others.iter().map(|other| plan.object(other)).collect();
+    let rest: Vec<Value> = others.iter().map(|other| object(plan, other)).collect();
     let mut result = json!({"orbit": main, "others": rest});
     if let Some(rows) = rows {
         result["rows"] = json!(rows);
@@ -246,7 +171,7 @@ fn result(
 }
 
 fn write_object(
-    plan: &impl OrbitSearch,
+    plan: &OrbitPlan,
     report: &Report<'_>,
     orbit: &Orbit,
     result: Value,
@@ -254,58 +179,67 @@ fn write_object(
     let mut work = report::work(&orbit.work);
     work["nodes"] = json!(orbit.nodes.len());
     work["iterations"] = json!(orbit.iterations);
-    let bytes = report.envelope(plan.system(), numerics(plan, orbit), result, work, None);
+    let bytes = report.envelope(&plan.system, numerics(plan, orbit), result, work, None);
     report.write(&bytes)
 }
 
 /// A row for each orbit.
 fn write_orbits(
-    plan: &impl OrbitSearch,
+    plan: &OrbitPlan,
     report: &Report<'_>,
     orbit: &Orbit,
     others: &[Orbit],
 ) -> Result<Ending> {
-    let system = plan.system();
+    let system = &plan.system;
     report.write_all(
         system.units(),
         report.remarks(system, &numerics(plan, orbit)),
-        &plan.columns(),
+        &views::orbit_columns(plan),
         std::iter::once(orbit).chain(others),
     )
 }
 
-/// tau and ln psi of each interface in the user's units.
-fn outward_point(orbit: &Orbit, system: &System) -> Vec<f64> {
-    let quantity = |i| {
-        if i == 0 {
-            Quantity::Stress
-        } else {
-            Quantity::LogState
-        }
+/// A state of each, in the user's units; where both interfaces move alike they share one.
+fn outward<T: Copy>(
+    plan: &OrbitPlan,
+    all: &[T],
+    outward: impl Fn(Quantity, T) -> Value,
+) -> Vec<(String, Value)> {
+    let states = plan.system.states().into_iter().enumerate();
+    let one = |(i, name): (usize, std::borrow::Cow<'static, str>)| {
+        let value = all[i.min(all.len() - 1)];
+        (name.into_owned(), outward(plan.system.quantity(i), value))
     };
-    let point = orbit.point.iter().enumerate();
-    let mut point: Vec<f64> = point
-        .map(|(i, &x)| system.units.outward(quantity(i), x))
-        .collect();
-    // Where both interfaces move alike they share a state.
-    while point.len() < system.interfaces + 1 {
-        point.push(point[1]);
-    }
-    point
+    states.map(one).collect()
 }
 
-fn object(orbit: &Orbit, system: &System) -> Value {
-    let units = &system.units;
-    let logs: Vec<Value> = orbit.floquet.multipliers.iter().map(logarithm).collect();
-    json!({
-        "symmetry": orbit.symmetry.name(),
-        "period": report::uncertain(units, Quantity::Time, orbit.period),
-        "point": outward_point(orbit, system),
+fn object(plan: &OrbitPlan, orbit: &Orbit) -> Value {
+    let units = plan.system.units();
+    let uncertain = |quantity, x| report::uncertain(units, quantity, x);
+    let point = outward(plan, &orbit.point, |quantity, x| {
+        json!(units.outward(quantity, x))
+    });
+    let point: Vec<Value> = point.into_iter().map(|(_, x)| x).collect();
+    let extremes = outward(
+        plan,
+        &orbit.extremes,
+        |quantity, [least, most]| json!({"min": uncertain(quantity, least), "max": uncertain(quantity, most)}),
+    );
+    let mut logs: Vec<Value> = orbit.floquet.multipliers.iter().map(logarithm).collect();
+    logs.extend(orbit.floquet.within.iter().map(|within| {
+        json!({
+            "ln_abs": uncertain(Quantity::Number, within.ln_abs),
+            "angle_over_pi": 0.0,
+            "kind": "within",
+            "cluster": within.cluster,
+            "multiplicity": within.multiplicity,
+        })
+    }));
+    let mut object = json!({
+        "period": uncertain(Quantity::Time, orbit.period),
+        "point": point,
         "point_uncertainty": orbit.point_uncertainty,
-        "stress_min": report::uncertain(units, Quantity::Stress, orbit.stress_min),
-        "stress_max": report::uncertain(units, Quantity::Stress, orbit.stress_max),
-        "slip_rate_max": units.outward(Quantity::SlipRate, orbit.slip_rate_max),
-        "state_min": units.outward(Quantity::State, orbit.state_min),
+        "extremes": extremes.into_iter().collect::<Map<String, Value>>(),
         "multipliers": multipliers(orbit),
         "log_multipliers": logs,
         "trivial_defect": orbit.floquet.trivial_defect,
@@ -313,11 +247,21 @@ fn object(orbit: &Orbit, system: &System) -> Value {
         "verdict": orbit.verdict().name(),
         "family": orbit.in_family,
         "method": orbit.method,
-    })
+    });
+    if let Some(symmetry) = plan.symmetry(orbit) {
+        let rate = views::known(orbit.slip_rate_max);
+        let rate = rate.map(|v| units.outward(Quantity::SlipRate, v));
+        object["symmetry"] = json!(symmetry.name());
+        object["stress_min"] = uncertain(Quantity::Stress, orbit.stress_min);
+        object["stress_max"] = uncertain(Quantity::Stress, orbit.stress_max);
+        object["slip_rate_max"] = json!(rate);
+        object["state_min"] = json!(units.outward(Quantity::State, orbit.state_min));
+    }
+    object
 }
 
 /// All multipliers, the trivial one first; of a conjugate pair the second one below the axis.
-pub(super) fn multipliers(orbit: &Orbit) -> Vec<[f64; 2]> {
+fn multipliers(orbit: &Orbit) -> Vec<[f64; 2]> {
     let mut multipliers = vec![[1.0, 0.0]];
     let mut above = true;
     for multiplier in &orbit.floquet.multipliers {
@@ -330,7 +274,7 @@ pub(super) fn multipliers(orbit: &Orbit) -> Vec<[f64; 2]> {
 }
 
 /// A multiplier by its logarithm.
-pub(super) fn logarithm(multiplier: &Multiplier) -> Value {
+fn logarithm(multiplier: &Multiplier) -> Value {
     let Uncertain { value, uncertainty } = multiplier.ln_abs;
     let known = multiplier.kind != Kind::BelowFloor;
     json!({
@@ -341,9 +285,9 @@ pub(super) fn logarithm(multiplier: &Multiplier) -> Value {
     })
 }
 
-fn comparison(checked: &Crosscheck, plan: &impl OrbitSearch) -> Value {
-    let second = plan.object(&checked.orbit);
-    let units = plan.system().units();
+fn comparison(checked: &Crosscheck, plan: &OrbitPlan) -> Value {
+    let second = object(plan, &checked.orbit);
+    let units = plan.system.units();
     let difference = units.outward(Quantity::Time, checked.period_difference);
     json!({
         "method": checked.orbit.method,

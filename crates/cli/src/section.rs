@@ -3,7 +3,6 @@
 use super::call::Call;
 use super::report::{self, Report, unit_names};
 use super::stream::StreamOut;
-use super::text;
 use super::words::{count, flagged, several, time};
 use super::{Ending, written};
 use serde_json::{Map, Value, json};
@@ -11,124 +10,97 @@ use std::io::Write;
 use std::path::Path;
 use twinslip::error::Result;
 use twinslip::number::Uncertain;
+use twinslip::number::polynomial::Crossing;
 use twinslip::section::Regime;
 use twinslip_output::{Cell, Format, RowList, plot};
 use twinslip_tasks::scene::{
-    CheckedExponents, Described, Quantity, SectionOptions, SectionOutcome, SectionPlan, TextModel,
-    Units, explain_section, run_section, section_columns,
+    CheckedExponents, Described, Quantity, SectionOptions, SectionOutcome, SectionPlan, Units,
+    explain_section, run_section, section_columns,
 };
 use twinslip_tasks::views;
 
 pub fn run(options: &SectionOptions, call: &Call) -> Result<Ending> {
-    if let Some(model) = TextModel::of(&options.model, &[])? {
-        return text::section::run(options, model, call);
-    }
     let plan = SectionPlan::new(options)?;
-    let columns = section_columns(plan.system.interfaces);
-    let map = ReturnMap {
-        system: &plan.system,
-        explanation: explain_section(&plan),
-        columns: views::names(&columns, false),
-        numerics: numerics(&plan),
-    };
-    let picture = |rows: &RowList| (rows.iter().len() > 0).then(|| picture(&plan, rows));
-    map.run(options, call, |out| run_section(&plan, out), picture)
-}
-
-/// A return map that is asked for, of whatever slides or turns.
-pub struct ReturnMap<'a> {
-    pub system: &'a dyn Described,
-    pub explanation: String,
-    pub columns: Vec<(String, Quantity)>,
-    pub numerics: Value,
-}
-
-impl ReturnMap<'_> {
-    /// Runs it, and writes its rows, its verdict and its picture, of which there is none where there are too few rows.
-    pub fn run(
-        self,
-        options: &SectionOptions,
-        call: &Call,
-        run: impl FnOnce(&mut StreamOut<'_>) -> Result<SectionOutcome>,
-        picture: impl FnOnce(&RowList) -> Option<plot::Drawing>,
-    ) -> Result<Ending> {
-        if let Some(path) = &options.plot {
-            plot::PictureFormat::of(path)?;
-        }
-        let others: Vec<&Path> = options.plot.as_deref().into_iter().collect();
-        let report = Report::new(&options.output, call, &others)?;
-        if options.output.explain {
-            call.say(self.explanation.trim_end());
-        }
-        let units = self.system.units();
-        let remarks = report.remarks(self.system, &self.numerics);
-        let drawn = options.plot.is_some();
-        let mut out = match StreamOut::new(&report, remarks, (self.columns, units), drawn) {
-            Ok(out) => out.counting(),
-            Err(error) => return written(Err(error), &report.place),
-        };
-        call.watch();
-        let outcome = run(&mut out)?;
-        call.unwatch();
-        let seconds = out.progress.finish().as_secs_f64();
-        let StreamOut { rows, broken, .. } = out;
-        if let Some(error) = broken {
-            return written(Err(error), &report.place);
-        }
-        let asked = (self.numerics, options.lyapunov);
-        let ending = write(self.system, asked, &report, &rows, &outcome)?;
-        if let Some(path) = &options.plot {
-            match picture(&rows) {
-                Some(picture) => report.draw(path, &picture)?,
-                None => report.say("there are too few returns to draw"),
-            }
-        }
-        report.say(summary(units, &outcome, seconds));
-        report.ended(match outcome.failure {
-            Some(error) => Err(error),
-            None if call.stops() => Ok(Ending::Interrupted),
-            None if ending == Ending::Done && outcome.regime == Regime::Undecided => {
-                let why = outcome.note.as_deref();
-                let why = why.unwrap_or("the returns do not tell; record more, or skip more");
-                Ok(report.undecided(format_args!("the regime: {why}")))
-            }
-            None => Ok(ending),
-        })
+    if let Some(path) = &options.plot {
+        plot::PictureFormat::of(path)?;
     }
+    let others: Vec<&Path> = options.plot.as_deref().into_iter().collect();
+    let report = Report::new(&options.output, call, &others)?;
+    if options.output.explain {
+        call.say(explain_section(&plan).trim_end());
+    }
+    let units = plan.system.units();
+    let remarks = report.remarks(&plan.system, &numerics(&plan));
+    let drawn = options.plot.is_some();
+    let columns = views::names(&section_columns(&plan.system), false);
+    let mut out = match StreamOut::new(&report, remarks, (columns, units), drawn) {
+        Ok(out) => out.counting(),
+        Err(error) => return written(Err(error), &report.place),
+    };
+    call.watch();
+    let outcome = run_section(&plan, &mut out)?;
+    call.unwatch();
+    let seconds = out.progress.finish().as_secs_f64();
+    let StreamOut { rows, broken, .. } = out;
+    if let Some(error) = broken {
+        return written(Err(error), &report.place);
+    }
+    let ending = write(&plan, &report, &rows, &outcome)?;
+    if let Some(path) = &options.plot {
+        match views::picture_of_section(&plan, &rows) {
+            Some(picture) => report.draw(path, &picture)?,
+            None => report.say("there are too few returns to draw"),
+        }
+    }
+    report.say(summary(units, &outcome, seconds));
+    report.ended(match outcome.failure {
+        Some(error) => Err(error),
+        None if call.stops() => Ok(Ending::Interrupted),
+        None if ending == Ending::Done && outcome.regime == Regime::Undecided => {
+            let why = outcome.note.as_deref();
+            let why = why.unwrap_or("the returns do not tell; record more, or skip more");
+            Ok(report.undecided(format_args!("the regime: {why}")))
+        }
+        None => Ok(ending),
+    })
 }
 
 fn numerics(plan: &SectionPlan) -> Value {
-    let units = &plan.system.units;
-    json!({
+    let units = plan.system.units();
+    let value = plan.outward_value();
+    let mut numerics = json!({
         "method": plan.method.name(),
         "asked": plan.asked_method,
         "rtol": plan.tolerances.rtol,
-        "atol": plan.tolerances.atol,
+        "atol": plan.told_atol(),
         "max_step": units.max_step(plan.tolerances),
         "max_steps": plan.max_steps,
-        "dimension": plan.dimension.number(),
-        "surface_stress": units.outward(Quantity::Stress, plan.stress),
-        "upwards": plan.direction == twinslip::number::polynomial::Crossing::Upwards,
+        "dimension": plan.start.len(),
+        "surface": format!("{}={value}", plan.state_name()),
+        "upwards": plan.direction == Crossing::Upwards,
         "skip": plan.skip,
         "returns": plan.returns,
         "patience": units.outward(Quantity::Time, plan.patience),
-    })
+    });
+    if plan.system.quantity(plan.state) == Quantity::Stress {
+        numerics["surface_stress"] = json!(value);
+    }
+    numerics
 }
 
 /// The object, or in a table the verdict after the rows.
 fn write(
-    system: &dyn Described,
-    (numerics, lyapunov): (Value, bool),
+    plan: &SectionPlan,
     report: &Report<'_>,
     rows: &RowList,
     outcome: &SectionOutcome,
 ) -> Result<Ending> {
-    let units = system.units();
+    let units = plan.system.units();
     if report.format == Format::Json {
         let bytes = report.envelope(
-            system,
-            numerics,
-            result(units, lyapunov, rows, outcome),
+            &plan.system,
+            numerics(plan),
+            result(units, plan.lyapunov, rows, outcome),
             report::work(&outcome.work),
             outcome.failure.as_ref(),
         );
@@ -249,13 +221,4 @@ fn summary(units: &Units, outcome: &SectionOutcome, seconds: f64) -> String {
         text.push_str(&format!("; {note}"));
     }
     text
-}
-
-/// The map, and beside it the states of two interfaces.
-fn picture(plan: &SectionPlan, rows: &RowList) -> plot::Drawing {
-    let mut columns = vec![vec![views::return_map(plan, rows)]];
-    if plan.system.interfaces == 2 {
-        columns.push(vec![views::states_at_returns(rows)]);
-    }
-    plot::Drawing::columns(columns)
 }

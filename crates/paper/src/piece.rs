@@ -2,11 +2,14 @@
 
 use std::sync::Arc;
 use twinslip::bifurcation::{BranchRow, LocusRow, Special};
+use twinslip::friction::AnyLaw;
+use twinslip::model::Loading;
 use twinslip::orbit::{Crosscheck, FoundOrbit};
 use twinslip_output::RowList;
 use twinslip_tasks::scene::{
-    BranchPlan, ClassifiedEquilibria, EquilibriaPlan, GeneralRow, LawCurve, LawPlan, LocusPlan,
-    OrbitPlan, Plan, Quantity, RowKind, RunOutcome, SectionOutcome, SectionPlan, SlabSubject,
+    AnySystem, BranchPlan, ClassifiedEquilibria, EquilibriaPlan, GeneralRow, LawCurve, LawPlan,
+    LocusPlan, OrbitPlan, Plan, Quantity, RowKind, RunOutcome, SectionOutcome, SectionPlan,
+    SlabSubject,
 };
 
 /// A run in time, with its points as they are drawn.
@@ -29,6 +32,32 @@ pub struct Map {
     pub rows: RowList,
     /// What it came to.
     pub outcome: SectionOutcome,
+}
+
+impl Run {
+    /// The law of all interfaces.
+    pub fn law(&self) -> AnyLaw {
+        of_the_paper(&self.plan.system).0
+    }
+
+    /// V_H and K.
+    pub fn loading(&self) -> Loading {
+        of_the_paper(&self.plan.system).1
+    }
+}
+
+impl Map {
+    /// V_H and K.
+    pub fn loading(&self) -> Loading {
+        of_the_paper(&self.plan.system).1
+    }
+}
+
+fn of_the_paper(system: &AnySystem) -> (AnyLaw, Loading) {
+    let (system, loading) = system
+        .closed_forms()
+        .expect("scenes of the paper have built-in laws");
+    (system.law, loading)
 }
 
 /// Branches as a parameter varies.

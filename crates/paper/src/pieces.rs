@@ -134,10 +134,11 @@ impl<'a> Pieces<'a> {
             }
             Command::Law(options) => {
                 let plan = LawPlan::new(&options)?;
-                Ok(Piece::Law(Arc::new(Laws {
-                    curves: plan.curves()?,
-                    plan,
-                })))
+                let (curves, failure) = plan.curves()?;
+                match failure {
+                    Some(error) => Err(error),
+                    None => Ok(Piece::Law(Arc::new(Laws { curves, plan }))),
+                }
             }
             Command::Sweep(_) => Err(not(name, "what figures show, but a sweep")),
             Command::Fit(_) => Err(not(name, "what figures show, but a fit")),
@@ -174,7 +175,7 @@ impl<'a> Pieces<'a> {
     }
 
     fn map_of(&self, name: &str, plan: SectionPlan) -> Result<Piece> {
-        let columns = section_columns(plan.system.interfaces);
+        let columns = section_columns(&plan.system);
         let voice = self.voice(name, "a return map");
         let mut kept = self.keep(&columns, false, &voice);
         let outcome = run_section(&plan, &mut kept)?;

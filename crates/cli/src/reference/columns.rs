@@ -2,9 +2,11 @@
 
 use super::meanings::meaning;
 use super::{code, escaped};
+use clap::Parser;
 use std::fmt::Write;
 use twinslip_tasks::scene::{
-    Column, Quantity, SweepLayout, Units, many_run_columns, run_columns, section_columns,
+    AnySystem, Column, OrbitOptions, OrbitPlan, Quantity, SweepLayout, Units, many_run_columns,
+    run_columns, section_columns,
 };
 use twinslip_tasks::views;
 
@@ -18,8 +20,8 @@ that is not known is an empty cell in CSV and `null` in JSON.
 Units are those without `--si`. With `--si` stress is in Pa, slip rate in m/s, slip in m, stiffness in Pa/m, and time in the unit of `--time-unit`,
 seconds by default. JSON names them under `units`.
 
-Rows of a system or a friction law from a file have its states and free parameters under their own names in place of stress, state and slip
-rate. `branch` and `locus` along other parameters than V_H and K have columns of these names in front. With `--ensemble` columns with the endings
+Rows of a user-defined system have its states under their own names in place of stress, state and slip rate; those of a friction law from a
+file are the same as of a built-in one. `branch` and `locus` along other parameters than V_H and K have columns of these names in front. With `--ensemble` columns with the endings
 `_lower` and `_upper` follow ([uncertainty of a fit](../uncertainty.md)). Files of `branch`, `locus` and `sweep` have a last column `row_check`
 ([files](files.md)).
 ";
@@ -36,6 +38,7 @@ struct Described {
     name: String,
     quantity: Quantity,
     uncertain: bool,
+    meaning: Option<&'static str>,
 }
 
 pub fn page() -> String {
@@ -58,11 +61,22 @@ pub fn page() -> String {
                 code(&column.name),
                 if column.uncertain { " ±" } else { "" },
                 escaped(&unit.replace("sigma", "σ")),
-                escaped(meaning(section.heading, &column.name)),
+                escaped(
+                    column
+                        .meaning
+                        .unwrap_or_else(|| meaning(section.heading, &column.name))
+                ),
             );
         }
     }
     page
+}
+
+/// Two interfaces with all defaults.
+#[derive(clap::Parser)]
+struct Two {
+    #[command(flatten)]
+    options: OrbitOptions,
 }
 
 fn sections() -> Vec<Section> {
@@ -72,6 +86,9 @@ fn sections() -> Vec<Section> {
         about,
         columns,
     };
+    let options = Two::parse_from(["two", "--driving=1", "--stiffness=1"]).options;
+    let of_two = AnySystem::new(&options.model).expect("two interfaces");
+    let orbits = OrbitPlan::new(&options).expect("an orbit of two interfaces");
     let of_grid = SweepLayout::interfaces(COUNT, std::iter::empty());
     vec![
         section(
@@ -82,7 +99,7 @@ fn sections() -> Vec<Section> {
         section(
             "integrate",
             "One row for each step, or for each time asked for by `--points` or `--every`. With `--program` a column `driving` follows.",
-            described(&run_columns(COUNT)),
+            described(&run_columns(&of_two)),
         ),
         section(
             "integrate: events",
@@ -122,12 +139,12 @@ fn sections() -> Vec<Section> {
         section(
             "orbit",
             "One row for each periodic orbit. With `--points` the rows are those of `integrate`, over one period.",
-            described(&views::orbit_columns(COUNT)),
+            described(&views::orbit_columns(&orbits)),
         ),
         section(
             "section",
             "One row for each return to the section.",
-            described(&section_columns(COUNT)),
+            described(&section_columns(&of_two)),
         ),
         section(
             "branch",
@@ -167,6 +184,7 @@ fn described<R>(columns: &[Column<R>]) -> Vec<Described> {
         name: column.name.to_string(),
         quantity: column.quantity,
         uncertain: column.uncertain,
+        meaning: column.meaning,
     };
     columns.iter().map(one).collect()
 }

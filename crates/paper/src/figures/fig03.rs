@@ -51,7 +51,7 @@ fn differences(run: &Run) -> Panel {
     let rows = &run.rows;
     let apart = combined(rows, ["slip_rate_1", "slip_rate_2"], |a, b| a - b);
     let stress = column(rows, "stress");
-    let (law, driving) = (run.plan.system.law, run.plan.loading.driving);
+    let (law, driving) = (run.law(), run.loading().driving);
     let alone = steady_stress(&law, driving);
     let mut marks = vec![
         Mark::new(0.0, steady_stress(&law, 0.5 * driving), "")

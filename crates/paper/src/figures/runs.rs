@@ -7,7 +7,7 @@ use twinslip::error::Result;
 use twinslip::friction::steady_stress;
 use twinslip_output::RowList;
 use twinslip_output::plot::{Axis, Block, Drawing, Note, Panel, PlotSeries, Stroke};
-use twinslip_tasks::scene::Dimension;
+use twinslip_tasks::scene::Described;
 use twinslip_tasks::views;
 
 /// The colour of what is drawn for comparison: a law, a diagonal.
@@ -61,15 +61,15 @@ pub fn in_time(run: &Run, rows: &RowList) -> Vec<Panel> {
 /// The title of a run: what is special of it, and its parameters.
 pub fn title(words: &str, run: &Run) -> String {
     let plan = &run.plan;
-    let (driving, stiffness) = (plan.loading.driving, plan.loading.stiffness);
-    let parameters = views::parameters(driving, stiffness, &plan.system.units);
+    let (driving, stiffness) = (run.loading().driving, run.loading().stiffness);
+    let parameters = views::parameters(driving, stiffness, plan.system.units());
     format!("{words}{parameters}")
 }
 
 /// The phase plane with the steady-state law as a dotted line.
 fn plane_with_law(run: &Run, rows: &RowList) -> Panel {
     let mut panel = views::phase_plane(&run.plan, rows);
-    let law = run.plan.system.law;
+    let law = run.law();
     let rates = [column(rows, "slip_rate_1"), column(rows, "slip_rate_2")].concat();
     let rates = rates.into_iter().filter(|&v| v > 0.0);
     let (lo, hi) = rates.fold((f64::INFINITY, 0.0), |(lo, hi): (f64, f64), v| {
@@ -154,7 +154,7 @@ pub fn with_phase_space(title: &str, run: &Run, rows: &RowList) -> Vec<Block> {
     };
     let law = plane_with_law(run, rows);
     // Equal interfaces leave nothing to be seen across.
-    if run.plan.dimension != Dimension::Full {
+    if run.plan.start.len() < 3 {
         return vec![block(title, vec![in_time(run, rows), vec![law, front]])];
     }
     vec![

@@ -16,7 +16,7 @@ const LONG: f64 = 1e3;
 /// All of it.
 pub fn entries(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     let (stiff, soft) = (pieces.run("fig03a")?, pieces.run("fig03b")?);
-    let law = stiff.plan.system.law;
+    let law = stiff.law();
     let mut all = of_the_text(&law)?;
     all.push(localises(&stiff, &soft)?);
     all.push(the_weaker_one(&stiff, &soft)?);
@@ -26,10 +26,10 @@ pub fn entries(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
 
 /// Whether the selected interface oscillates more and more: by the runs, and by the eigenvalues of one interface.
 fn stick_slip(stiff: &Run, soft: &Run) -> Result<Entry> {
-    let law = stiff.plan.system.law;
+    let law = stiff.law();
     let state = &steady_states(&law, 1.0, 1, Solver::Newton)?.equilibria[0];
     let alone = |run: &Run| -> Result<bool> {
-        Ok(stability(&law, state, run.plan.loading.stiffness)?.eigenvalues[0].re > 0.0)
+        Ok(stability(&law, state, run.loading().stiffness)?.eigenvalues[0].re > 0.0)
     };
     let word = |grows: [bool; 2]| match grows {
         [false, true] => "below K_c only",
@@ -48,8 +48,8 @@ fn stick_slip(stiff: &Run, soft: &Run) -> Result<Entry> {
     )
     .noted(format!(
         "runs at K = {} and {}, K_c = {:.6}; the text gives no stiffness",
-        stiff.plan.loading.stiffness,
-        soft.plan.loading.stiffness,
+        stiff.loading().stiffness,
+        soft.loading().stiffness,
         critical_stiffness(&law, 1.0)
     )))
 }
@@ -118,14 +118,12 @@ fn no_effect_of_stiffness(law: &AnyLaw) -> Result<Entry> {
 
 /// The slip rates at the end of a longer run of the same scene, from its start or with the interfaces exchanged.
 fn later(run_of: &Run, exchanged: bool) -> Result<[f64; 2]> {
-    let (stress, [first, second]) = run_of.plan.start;
-    let start = if exchanged {
-        [second, first]
-    } else {
-        [first, second]
-    };
+    let mut start = run_of.plan.start.clone();
+    if exchanged {
+        start.swap_rows(1, 2);
+    }
     let plan = Plan {
-        start: (stress, start),
+        start,
         until: LONG,
         sampling: Sampling::FinalOnly,
         picture: false,
@@ -181,7 +179,7 @@ fn localises(stiff: &Run, soft: &Run) -> Result<Entry> {
 fn the_weaker_one(stiff: &Run, soft: &Run) -> Result<Entry> {
     let (mut weaker, mut exchanged) = (true, true);
     for run in [stiff, soft] {
-        let (_, [first, second]) = run.plan.start;
+        let (first, second) = (run.plan.start[1], run.plan.start[2]);
         let [v1, v2] = later(run, false)?;
         weaker &= (first < second) == (v1 > v2);
         let [v1, v2] = later(run, true)?;
@@ -213,7 +211,7 @@ fn grows(run: &Run) -> Result<bool> {
         column("slip_rate_1")?,
         column("slip_rate_2")?,
     );
-    let driving = run.plan.loading.driving;
+    let driving = run.loading().driving;
     let third = run.plan.until / 3.0;
     let mut largest = [0.0_f64; 3];
     for ((t, v1), v2) in time.iter().zip(&first).zip(&second) {

@@ -42,7 +42,7 @@ pub fn of_fig_8(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
 
 fn fast_interface(pieces: &Pieces<'_>, run: &Run, least: f64) -> Result<Entry> {
     let c = Parameters::heslot_1994().residual_strength;
-    let Loading { driving, stiffness } = run.plan.loading;
+    let Loading { driving, stiffness } = run.loading();
     let (at, kind) = ((driving, stiffness), Symmetry::Asymmetric);
     let orbit = orbit_at(pieces, at, kind, InitialGuess::Anywhere, Choice::Taylor)?;
     let word = |least: f64| whether(least < 0.1 * c, "much less than c", "not much less than c");
@@ -82,8 +82,8 @@ pub fn of_fig_11(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
         .len()
         .checked_sub(1)
         .ok_or_else(|| missing("fig11 has no rows"))?;
-    let (begin, end) = (run.plan.start.1, apart(last));
-    let at = (run.plan.loading.driving, run.plan.loading.stiffness);
+    let (start, end) = (&run.plan.start, apart(last));
+    let at = (run.loading().driving, run.loading().stiffness);
     let method = second_method()?;
     let orbit = orbit_at(
         pieces,
@@ -102,7 +102,7 @@ pub fn of_fig_11(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
             word(end < 1e-9),
         )
         .beside(MULTIPLIERS, Answer::Word(word(stable)))
-        .noted(match (begin[0] - begin[1]).abs() {
+        .noted(match (start[1] - start[2]).abs() {
             begin if end == 0.0 => format!(
                 "|ln psi_1 - ln psi_2| is {begin:.3} at the start; at the end both states are the same double"
             ),
@@ -150,7 +150,7 @@ pub fn of_fig_16(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     };
     let seen = (1..=8).find(|&q| repeat(q)).unwrap_or(0);
     let word = |q: usize| whether(q == 4, "four-fold", "otherwise");
-    let driving = map.plan.loading.driving;
+    let driving = map.loading().driving;
     Ok(vec![
         Entry::claim(
             ("four-fold-structure", "section 4.3.2; Fig. 16(b)"),

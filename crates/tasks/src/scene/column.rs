@@ -72,6 +72,8 @@ pub struct Column<R> {
     pub uncertain: bool,
     /// Whether a table, which has less room, shows it.
     pub in_table: bool,
+    /// The sentence of the reference, where the column is declared with it.
+    pub meaning: Option<&'static str>,
     /// What a row has in it.
     entry: Arc<dyn Fn(&R) -> CellValue + Send + Sync>,
 }
@@ -88,6 +90,7 @@ impl<R> Column<R> {
             quantity,
             uncertain: false,
             in_table: true,
+            meaning: None,
             entry: Arc::new(entry),
         }
     }
@@ -101,6 +104,28 @@ impl<R> Column<R> {
         Column {
             uncertain: true,
             ..Column::new(name, quantity, entry)
+        }
+    }
+
+    /// The bound on the error of a number, which no table shows, where one is known.
+    pub fn bound(
+        name: impl Into<Cow<'static, str>>,
+        quantity: Quantity,
+        entry: impl Fn(&R) -> Uncertain + Send + Sync + 'static,
+    ) -> Self {
+        let bound = move |row: &R| {
+            Some(entry(row).uncertainty)
+                .filter(|x| x.is_finite())
+                .into()
+        };
+        Column::new(name, quantity, bound).not_in_table()
+    }
+
+    /// With the sentence that the reference prints of it.
+    pub fn meaning(self, meaning: &'static str) -> Self {
+        Column {
+            meaning: Some(meaning),
+            ..self
         }
     }
 

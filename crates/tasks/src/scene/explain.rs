@@ -1,7 +1,8 @@
 //! A plan in words: what is computed, how, and why the rest is not.
 
 use super::estimate::Companion;
-use super::plan::{Dimension, Plan, Sampling, longest_in_words};
+use super::plan::{Plan, Sampling, dimension_in_words, longest_in_words, tolerance_in_words};
+use super::system::Described;
 use super::units::Quantity;
 use std::fmt::Write;
 use twinslip::error::count;
@@ -22,48 +23,36 @@ pub fn explain(plan: &Plan, keeping: Keeping) -> String {
     let mut line = |subject: &str, words: String| {
         writeln!(text, "  {subject:<18}{words}").expect("writing to a string");
     };
-    line("dimension", dimension(plan));
+    line(
+        "dimension",
+        dimension_in_words(&plan.system, plan.subspace, &plan.start),
+    );
     line("method", method(plan));
+    if let Some(words) = plan.system.formulas_in_words() {
+        line("formulas", words);
+    }
     line(
         "tolerances",
         format!(
-            "rtol {:e}, atol {:e} on (tau, ln psi), at most {} steps{}",
+            "rtol {:e}, {}, at most {} steps{}",
             plan.tolerances.rtol,
-            plan.tolerances.atol,
+            tolerance_in_words(&plan.system, plan.tolerances.atol, &plan.told_atol()),
             count(plan.max_steps),
-            longest_in_words(plan.tolerances, &plan.system.units)
+            longest_in_words(plan.tolerances, plan.system.units())
         ),
     );
     line(
         "tangents",
         "off: no output asks for multipliers or exponents".into(),
     );
-    line("driving", driving(plan));
+    if plan.system.slides() {
+        line("driving", driving(plan));
+    }
     line("dense output", dense(plan));
-    line(
-        "slip",
-        if plan.needs_slip() {
-            format!("on: {}", slip(plan.method.series()))
-        } else {
-            "off: no slip column and no events asked for".into()
-        },
-    );
-    line(
-        "events",
-        plan.detected().map_or_else(
-            || "off: `events` is not given".into(),
-            |threshold| {
-                let how = location(plan.method.series());
-                let why = match plan.events {
-                    Some(_) => "",
-                    None => ", for the summary",
-                };
-                format!(
-                    "on: slip faster than V_H whose peak exceeds {threshold} V_H, by {how}{why}"
-                )
-            },
-        ),
-    );
+    if plan.system.slides() {
+        line("slip", slip(plan));
+        line("events", events(plan));
+    }
     line("trajectory", trajectory(plan, keeping));
     line(
         "error estimate",
@@ -80,19 +69,6 @@ pub fn explain(plan: &Plan, keeping: Keeping) -> String {
         },
     );
     text
-}
-
-fn dimension(plan: &Plan) -> String {
-    match plan.dimension {
-        Dimension::Single => "2: one interface, (tau, ln psi)".into(),
-        Dimension::Symmetric => {
-            "2: psi1 = psi2 at the start, so the run stays in the symmetric subspace (tau, ln psi) for ever".into()
-        }
-        Dimension::Full if plan.system.unequal.is_some() => {
-            "3: the interfaces differ, (tau, ln psi1, ln psi2)".into()
-        }
-        Dimension::Full => "3: psi1 and psi2 differ, (tau, ln psi1, ln psi2)".into(),
-    }
 }
 
 fn method(plan: &Plan) -> String {
@@ -144,14 +120,30 @@ fn dense(plan: &Plan) -> String {
     }
 }
 
-fn slip(series: HasSeries) -> &'static str {
-    match series {
+fn slip(plan: &Plan) -> String {
+    if !plan.needs_slip() {
+        return "off: no slip column and no events asked for".into();
+    }
+    let how = match plan.method.series() {
         HasSeries::Always => "the series of the slip rates integrated term by term",
         HasSeries::Sometimes => {
             "the series of the slip rates integrated term by term; five-point quadrature along the steps that have none"
         }
         HasSeries::Never => "five-point quadrature of the slip rates along every step",
-    }
+    };
+    format!("on: {how}")
+}
+
+fn events(plan: &Plan) -> String {
+    let Some(threshold) = plan.detected() else {
+        return "off: `events` is not given".into();
+    };
+    let how = location(plan.method.series());
+    let why = match plan.events {
+        Some(_) => "",
+        None => ", for the summary",
+    };
+    format!("on: slip faster than V_H whose peak exceeds {threshold} V_H, by {how}{why}")
 }
 
 fn location(series: HasSeries) -> &'static str {
@@ -165,7 +157,10 @@ fn location(series: HasSeries) -> &'static str {
 }
 
 fn trajectory(plan: &Plan, keeping: Keeping) -> String {
-    let unit = plan.system.units.name(Quantity::Time);
+    let unit = match plan.system.units().name(Quantity::Time) {
+        "1" => String::new(),
+        unit => format!(" {unit}"),
+    };
     let rows = match plan.sampling {
         Sampling::FinalOnly if plan.observed() => {
             return "off: only the end is asked for; steps are watched for slip alone".into();
@@ -175,7 +170,7 @@ fn trajectory(plan: &Plan, keeping: Keeping) -> String {
         }
         Sampling::EveryStep => "a row at every step".to_owned(),
         Sampling::Points(n) => format!("{n} rows equally spaced in time"),
-        Sampling::Every(dt) => format!("a row every {dt} {unit}"),
+        Sampling::Every(dt) => format!("a row every {dt}{unit}"),
     };
     let rows = match keeping {
         Keeping::Streamed => format!("not stored: {rows}, written as it comes"),

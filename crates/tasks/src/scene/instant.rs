@@ -1,65 +1,68 @@
 //! The points of a run in time, and their columns: what no column asks for is not computed.
 
+use super::any_system::AnySystem;
 use super::column::Column;
 use super::units::Quantity;
-use twinslip::friction::{Formulas, ScaledLaw};
 
-/// A point of a run in the full chart. With one interface, or two equal ones, both entries are the same.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// A point of a run, dimensionless.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Instant {
-    /// The law of each interface.
-    pub laws: [ScaledLaw; 2],
     /// Time.
     pub time: f64,
-    /// tau.
-    pub stress: f64,
-    /// ln psi of each interface.
-    pub log_state: [f64; 2],
-    /// Slip of each interface since the start.
-    pub slip: [f64; 2],
-    /// V_H.
+    /// The values of all states: of interfaces tau, and ln psi of each.
+    pub state: Vec<f64>,
+    /// Slip of each interface since the start; none of what is no interface.
+    pub slip: Vec<f64>,
+    /// V_H; 0 where nothing is driven.
     pub driving: f64,
 }
 
-impl Instant {
-    /// The same laws and V_H at another point, of tau and ln psi.
-    pub fn at(&self, time: f64, (stress, log_state): (f64, [f64; 2]), slip: [f64; 2]) -> Self {
-        Instant {
-            time,
-            stress,
-            log_state,
-            slip,
-            ..*self
-        }
-    }
-
-    /// The slip rate of an interface, 0 or 1, in V*.
-    pub fn slip_rate(&self, interface: usize) -> f64 {
-        let law = &self.laws[interface];
-        law.slip_rate(law.activation(self.stress), self.log_state[interface].exp())
-    }
-}
-
-/// All columns of a run of one or two interfaces, in the order of the output.
-pub fn run_columns(interfaces: usize) -> Vec<Column<Instant>> {
+/// All columns of a run, in the order of the output: of interfaces what they do, of another system its states.
+pub fn run_columns(system: &AnySystem) -> Vec<Column<Instant>> {
     use Quantity::{Length, LogState, SlipRate, State, Stress, Time};
-    let each = |name: &'static str, quantity, entry: fn(&Instant, usize) -> f64| {
+    let mut columns =
+        vec![Column::new("time", Time, |at: &Instant| at.time.into()).meaning("time")];
+    if !system.slides() {
+        let states = system.states().into_iter().enumerate();
+        columns.extend(states.map(|(i, name)| {
+            let value = move |at: &Instant| at.state[i].into();
+            Column::new(name, system.quantity(i), value)
+        }));
+        return columns;
+    }
+    let interfaces = system.clusters().len();
+    let each = |name: &'static str, quantity, entry: fn(&Instant, usize) -> f64, meaning| {
         (0..interfaces).map(move |i| {
-            Column::new(
-                format!("{name}_{}", i + 1),
-                quantity,
-                move |at: &Instant| entry(at, i).into(),
-            )
+            let entry = move |at: &Instant| entry(at, i).into();
+            Column::new(format!("{name}_{}", i + 1), quantity, entry).meaning(meaning)
         })
     };
-    let mut columns = vec![
-        Column::new("time", Time, |at: &Instant| at.time.into()),
-        Column::new("stress", Stress, |at: &Instant| at.stress.into()),
-    ];
-    columns.extend(each("state", State, |at, i| at.log_state[i].exp()));
-    columns.extend(each("log_state", LogState, |at, i| at.log_state[i]));
-    columns.extend(each("slip_rate", SlipRate, Instant::slip_rate));
-    columns.extend(each("slip", Length, |at, i| at.slip[i]));
+    let stress = |at: &Instant| at.state[0].into();
+    columns.push(Column::new("stress", Stress, stress).meaning("shear stress τ"));
+    columns.extend(each(
+        "state",
+        State,
+        |at, i| at.state[i + 1].exp(),
+        "ψ of interface or cluster i",
+    ));
+    columns.extend(each(
+        "log_state",
+        LogState,
+        |at, i| at.state[i + 1],
+        "ln ψ of interface i",
+    ));
+    columns.extend((0..interfaces).map(|i| {
+        let slip_rate = system.slip_rate();
+        let entry = move |at: &Instant| slip_rate(i, &at.state).into();
+        Column::new(format!("slip_rate_{}", i + 1), SlipRate, entry)
+            .meaning("slip rate of interface or cluster i")
+    }));
+    columns.extend(each(
+        "slip",
+        Length,
+        |at, i| at.slip[i],
+        "slip of interface i since the start of the run",
+    ));
     columns
 }
 
@@ -68,11 +71,12 @@ pub fn driving_column() -> Column<Instant> {
     Column::new("driving", Quantity::SlipRate, |at: &Instant| {
         at.driving.into()
     })
+    .meaning("driving velocity V_H")
 }
 
 /// Those that a picture shows.
-pub fn pictured_columns(interfaces: usize) -> Vec<Column<Instant>> {
-    let mut columns = run_columns(interfaces);
+pub fn pictured_columns(system: &AnySystem) -> Vec<Column<Instant>> {
+    let mut columns = run_columns(system);
     columns.retain(|column| !matches!(column.quantity, Quantity::LogState | Quantity::Length));
     columns
 }

@@ -1,14 +1,14 @@
 //! The steady-state friction law from options: at which slip rates.
 
 use super::options::{LawOptions, ModelOptions};
-use super::system::System;
+use super::system::{Described, System};
+use super::text::{TextModel, curve_of_formulas};
 use super::units::{Quantity, Units};
 use twinslip::error::{Error, Result};
 use twinslip::friction::{
-    Extremum, Formulas, Law, ScaledLaw, StiffnessMaximum, critical_stiffness, positive,
-    steady_stress,
+    Extremum, Formulas, Law, StiffnessMaximum, critical_stiffness, positive, steady_stress_within,
 };
-use twinslip::number::between_in_log;
+use twinslip::number::{Interval, Real, Uncertain, between_in_log};
 
 /// The slip rates from, to where none are given.
 const GRID: (f64, f64) = (1e-3, 1e6);
@@ -18,12 +18,20 @@ const MOST_POINTS: usize = 10_000_000;
 /// A friction law that is asked for, checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LawPlan {
-    /// Whose law it is.
-    pub system: System,
+    laws: Laws,
     /// Where it is evaluated, ascending, in V*.
     pub slip_rates: Vec<f64>,
     /// What slides together, where V_H or K is given.
     pub together: Option<Together>,
+}
+
+/// Whose laws they are.
+#[derive(Debug, Clone, PartialEq)]
+enum Laws {
+    /// Of interfaces with a built-in law, which has closed forms.
+    Closed(Box<System>),
+    /// Of interfaces with a law by its formulas.
+    Formulas(Box<TextModel>),
 }
 
 /// Interfaces that slide steadily together.
@@ -40,7 +48,7 @@ impl Together {
     ///
     /// # Errors
     /// [`Error::Input`] for clusters; [`Error::Parameter`] for values that are not positive.
-    pub(super) fn of(model: &ModelOptions, units: &Units) -> Result<Option<Self>> {
+    fn of(model: &ModelOptions, units: &Units) -> Result<Option<Self>> {
         if model.slab.clusters.is_some() {
             return Err(Error::Input(
                 "`clusters`: the law is that of one interface; leave it out".into(),
@@ -66,13 +74,13 @@ impl Together {
 
 /// The steady sliding of an interface, at rates and what it is known by.
 #[derive(Debug, Clone, PartialEq)]
-pub struct LawCurve<P = LawPoint> {
+pub struct LawCurve {
     /// Whose it is: 1 or 2; 1 where both are equal.
     pub interface: usize,
     /// tau_ss at these rates.
-    pub points: Vec<P>,
+    pub points: Vec<LawPoint>,
     /// The same at V_H/N, where V_H is given.
-    pub together: Option<P>,
+    pub together: Option<LawPoint>,
     /// What it is known by, whatever the rates.
     pub landmarks: LawLandmarks,
     /// The coefficient of friction over the stress, where it is known.
@@ -86,12 +94,12 @@ pub struct LawPoint {
     pub interface: usize,
     /// V.
     pub slip_rate: f64,
-    /// tau_ss(V).
-    pub stress: f64,
+    /// tau_ss(V), with an infinite bound where none is known.
+    pub stress: Uncertain,
     /// The friction coefficient, a tau_ss where all interfaces are equal; `None` for a law without an a.
     pub friction: Option<f64>,
-    /// psi_ss(V).
-    pub state: f64,
+    /// psi_ss(V), likewise.
+    pub state: Uncertain,
     /// k_c(V): a single interface on a stiffer spring slides steadily.
     pub critical_stiffness: f64,
 }
@@ -113,71 +121,123 @@ impl LawPlan {
     /// # Errors
     /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
     pub fn new(options: &LawOptions) -> Result<Self> {
-        let system = System::new(&options.model)?;
+        let formulas = TextModel::of(&options.model, &["driving", "stiffness"])?;
+        let laws = match formulas.filter(|model| model.slab.is_some()) {
+            Some(model) => Laws::Formulas(Box::new(model)),
+            None => Laws::Closed(Box::new(System::new(&options.model)?)),
+        };
+        let units = *laws.described().units();
         Ok(LawPlan {
-            slip_rates: slip_rates(options, &system.units)?,
-            together: Together::of(&options.model, &system.units)?,
-            system,
+            slip_rates: slip_rates(options, &units)?,
+            together: Together::of(&options.model, &units)?,
+            laws,
         })
+    }
+
+    /// Whose law it is.
+    pub fn system(&self) -> &dyn Described {
+        self.laws.described()
     }
 
     /// The plan, one subject a line.
     pub fn explain(&self) -> String {
-        format!(
-            "plan of this command\n  4 closed formulas at {} slip rates{}; extrema enclosed by interval arithmetic; no integration",
-            self.slip_rates.len(),
-            of_each(self.system.unequal.is_some())
-        )
+        let count = self.slip_rates.len();
+        let each = match self.laws.count() {
+            1 => "",
+            _ => " for each interface",
+        };
+        let how = match &self.laws {
+            Laws::Closed(_) => format!(
+                "4 closed formulas at {count} slip rates{each}; extrema enclosed by interval arithmetic"
+            ),
+            Laws::Formulas(_) => format!(
+                "zeros of both formulas at {count} slip rates{each}, enclosed by interval arithmetic; extrema where slopes change sign between these"
+            ),
+        };
+        format!("plan of this command\n  {how}; no integration")
     }
 
-    /// The law of both interfaces, where they differ of each.
+    /// The law of both interfaces, where they differ of each, up to a rate at which one has no steady state, and why that is.
     ///
     /// # Errors
-    /// Those of [`ScaledLaw::critical_stiffness_maximum`].
-    pub fn curves(&self) -> Result<Vec<LawCurve>> {
-        let laws = self.system.laws();
-        let count = if self.system.unequal.is_some() { 2 } else { 1 };
-        (0..count).map(|i| self.curve(i, &laws[i])).collect()
-    }
-
-    fn curve(&self, place: usize, law: &ScaledLaw) -> Result<LawCurve> {
-        let interface = place + 1;
-        // The stress is measured in a sigma of the first one.
-        let coefficient = self.system.constants[place].direct_effect * law.stress_factor;
-        let point = |&v: &f64| {
-            let stress = steady_stress(law, v);
-            LawPoint {
-                interface,
-                slip_rate: v,
-                stress,
-                friction: Some(coefficient * stress),
-                state: law.steady_state(v),
-                critical_stiffness: critical_stiffness(law, v),
+    /// Those of [`critical_stiffness_maximum()`](twinslip::friction::critical_stiffness_maximum); [`Error::NotConverged`] where a law has no steady state between two points that
+    /// have.
+    pub fn curves(&self) -> Result<(Vec<LawCurve>, Option<Error>)> {
+        let mut curves = Vec::new();
+        let together = self.together.and_then(|all| all.slip_rate);
+        for i in 0..self.laws.count() {
+            let at = (&self.slip_rates[..], together);
+            let (curve, failure) = match &self.laws {
+                Laws::Closed(system) => (curve(system, i, at)?, None),
+                Laws::Formulas(model) => curve_of_formulas(model, i, at)?,
+            };
+            curves.push(curve);
+            if failure.is_some() {
+                return Ok((curves, failure));
             }
-        };
-        Ok(LawCurve {
-            interface,
-            points: self.slip_rates.iter().map(point).collect(),
-            together: self
-                .together
-                .and_then(|all| all.slip_rate.as_ref().map(&point)),
-            landmarks: LawLandmarks {
-                extrema: Extremum::all(law),
-                critical_stiffness_maximum: law.critical_stiffness_maximum()?,
-                transition_rate: law.transition_rate(),
-            },
-            coefficient: Some(coefficient),
-        })
+        }
+        Ok((curves, None))
     }
 }
 
-/// In plans, where there are two laws.
-pub(super) fn of_each(two: bool) -> &'static str {
-    if two { " for each interface" } else { "" }
+impl Laws {
+    fn described(&self) -> &dyn Described {
+        match self {
+            Laws::Closed(system) => &**system,
+            Laws::Formulas(model) => &**model,
+        }
+    }
+
+    /// How many differ.
+    fn count(&self) -> usize {
+        let differ = match self {
+            Laws::Closed(system) => system.unequal.is_some(),
+            Laws::Formulas(model) => {
+                let slab = model.slab.as_ref();
+                slab.is_some_and(|slab| slab.differ(&model.system))
+            }
+        };
+        if differ { 2 } else { 1 }
+    }
+}
+
+/// The built-in law of an interface at these rates, and at V_H/N.
+fn curve(
+    system: &System,
+    place: usize,
+    (rates, together): (&[f64], Option<f64>),
+) -> Result<LawCurve> {
+    let (interface, law) = (place + 1, &system.laws()[place]);
+    // The stress is measured in a sigma of the first one.
+    let coefficient = system.constants[place].direct_effect * law.stress_factor;
+    let point = |&v: &f64| {
+        let stress = steady_stress_within(law, v, 0.0);
+        let state = law.steady_state(v);
+        let rounding = law.steady_state(Interval::constant(v)).distance_from(state);
+        LawPoint {
+            interface,
+            slip_rate: v,
+            stress,
+            friction: Some(coefficient * stress.value),
+            state: Uncertain::new(state, rounding),
+            critical_stiffness: critical_stiffness(law, v),
+        }
+    };
+    Ok(LawCurve {
+        interface,
+        points: rates.iter().map(point).collect(),
+        together: together.as_ref().map(point),
+        landmarks: LawLandmarks {
+            extrema: Extremum::all(law),
+            critical_stiffness_maximum: law.critical_stiffness_maximum()?,
+            transition_rate: law.transition_rate(),
+        },
+        coefficient: Some(coefficient),
+    })
 }
 
 /// The slip rates of the grid, ascending, in V*.
-pub(super) fn slip_rates(options: &LawOptions, units: &Units) -> Result<Vec<f64>> {
+fn slip_rates(options: &LawOptions, units: &Units) -> Result<Vec<f64>> {
     let end = |name, value: Option<f64>, default: f64| match value {
         Some(v) => Ok(units.inward(Quantity::SlipRate, positive(name, v)?)),
         None => Ok(default),

@@ -17,7 +17,7 @@
 //!     fn reached(&mut self, _: f64) -> Control { Control::Continue }
 //! }
 //! let plan = Plan::new(&line.options)?;
-//! assert_eq!(plan.dimension.number(), 2);
+//! assert_eq!(plan.start.len(), 2);
 //! let mut last = Last(Vec::new());
 //! let outcome = run(&plan, &mut last)?;
 //! assert!(outcome.failure.is_none());
@@ -25,11 +25,13 @@
 //! # Ok::<(), twinslip::Error>(())
 //! ```
 
+mod any_system;
 mod branch;
 mod column;
 mod command;
 mod continuation;
 mod ensemble;
+mod equations;
 mod equilibria;
 mod estimate;
 mod event;
@@ -43,6 +45,7 @@ mod ivp;
 mod law;
 mod locus;
 mod many;
+mod observer;
 mod options;
 mod orbit;
 mod plan;
@@ -52,7 +55,6 @@ mod section;
 mod set;
 mod shipped;
 mod slip;
-mod stretch;
 mod summary;
 mod sweep;
 mod system;
@@ -62,12 +64,14 @@ mod units;
 mod warnings;
 mod words;
 
+pub use any_system::AnySystem;
 pub use branch::{BranchKind, BranchParameter, BranchPlan};
 pub use column::{CellValue, Column};
 pub use command::Command;
 pub use command::sentence;
 pub use continuation::{BranchOptions, ContinuationOptions, LocusOptions, SearchOptions};
 pub use ensemble::{EnsembleFile, EnsembleOptions, EnsemblePlan, FittedParameter, FrictionFit};
+pub use equations::Subspace;
 pub use equilibria::{AnyStability, ClassifiedEquilibria, ClassifiedEquilibrium, EquilibriaPlan};
 pub use event::SlipEvent;
 pub use explain::{Keeping, explain};
@@ -94,7 +98,7 @@ pub use options::{
 };
 pub use orbit::OrbitPlan;
 pub use orbit::SECOND_METHOD;
-pub use plan::{Dimension, Plan, Point, Sampling, start, tolerances};
+pub use plan::{Plan, Point, Sampling, start, tolerances};
 pub use program::{Change, Program, Stretch};
 pub use run::{RunOutcome, Sink, run};
 pub use section::{
@@ -107,9 +111,7 @@ pub use sweep::{BasinStates, Moving, Shard, SweepLayout, SweepOptions, SweepPlan
 pub use system::{Described, System};
 pub use text::{
     Friction, LawFile, SearchPlace, Steady, SystemFile, TextEquilibria, TextEquilibriaPlan,
-    TextEquilibrium, TextInstant, TextLawPlan, TextLawPoint, TextModel, TextOptions, TextOrbitPlan,
-    TextPlan, TextReturn, TextSectionPlan, TextSlab, TextSlider, run_text, run_text_section,
-    text_columns, text_section_columns,
+    TextEquilibrium, TextModel, TextOptions, TextSlab, TextSlider,
 };
 pub use units::{Quantity, TimeUnit, Units};
 pub use words::{Plain, plain};

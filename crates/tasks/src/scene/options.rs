@@ -286,11 +286,11 @@ pub struct SectionOptions {
         help = START_HELP
     )]
     pub start: Option<String>,
-    /// Section of the return map: stress=VALUE, or stress=auto for the steady stress at the mean slip rate, tau_ss(V_H/2) of two interfaces
-    /// [default: stress=auto]. With --system STATE=VALUE (required); with a --law from a file either form
+    /// Section of the return map, STATE=VALUE; of interfaces stress=VALUE or log_state_1=VALUE, or stress=auto for the steady stress at the mean
+    /// slip rate, tau_ss(V_H/2) of two interfaces [default: stress=auto; required with --system]
     #[arg(long, value_name = "SURFACE", help_heading = "Run")]
     pub surface: Option<String>,
-    /// Count returns where the stress (with --system the state) rises through the section; by default where it falls
+    /// Count returns where the state, by default the stress, rises through the section; by default where it falls
     #[arg(long, help_heading = "Run")]
     pub upwards: bool,
     /// Number of returns to record

@@ -1,16 +1,20 @@
 //! From options to a plan: what is integrated, in which dimension, and which extras the outputs need. What no output needs
 //! is not in the plan, and so is not done.
 
+use super::any_system::AnySystem;
 use super::column::Column;
+use super::equations::Subspace;
 use super::estimate::Companion;
 use super::instant::{Instant, driving_column, pictured_columns, run_columns};
-use super::options::{IntegrateOptions, NumericsOptions};
+use super::options::IntegrateOptions;
 use super::program::{Program, Stretch};
-use super::system::System;
+use super::system::{Described, System};
 use super::units::{Quantity, Units};
+use serde_json::Value;
 use twinslip::error::{Error, Result};
+use twinslip::field::Vector;
 use twinslip::friction::{Formulas, Law, beside, positive};
-use twinslip::integrate::{Choice, Tolerances};
+use twinslip::integrate::{Choice, MotionUnits, Tolerances};
 use twinslip::model::Loading;
 
 /// How a run starts where nobody says otherwise.
@@ -23,38 +27,6 @@ pub(super) const EVENT_THRESHOLD: f64 = 2.0;
 const MAX_ROWS: f64 = 1e9;
 /// tau, and ln psi of both interfaces: twice the same where there is one, or where both move alike.
 pub type Point = (f64, [f64; 2]);
-
-/// The system that is integrated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Dimension {
-    /// One interface (11), in 2-D.
-    Single,
-    /// Two interfaces that start equal and so stay equal: their symmetric subspace, in 2-D.
-    Symmetric,
-    /// Two interfaces (19), in 3-D.
-    Full,
-}
-
-impl Dimension {
-    /// Of a run of this system from tau and ln psi of both interfaces.
-    pub(super) fn of(system: &System, (_, log_state): &(f64, [f64; 2])) -> Self {
-        if system.interfaces == 1 {
-            Dimension::Single
-        } else if log_state[0] == log_state[1] && system.unequal.is_none() {
-            Dimension::Symmetric
-        } else {
-            Dimension::Full
-        }
-    }
-
-    /// 2 or 3.
-    pub fn number(self) -> usize {
-        match self {
-            Dimension::Single | Dimension::Symmetric => 2,
-            Dimension::Full => 3,
-        }
-    }
-}
 
 /// At which times there are rows.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -114,22 +86,23 @@ fn multiple(i: usize, dt: f64) -> f64 {
     (0..=MOST_DIGITS).find_map(as_decimal).unwrap_or(i * dt)
 }
 
+/// When a run begins.
+const BEGIN: f64 = 0.0;
+
 /// A run, checked, and only what its outputs need.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
-    /// What slides.
-    pub system: System,
-    /// V_H and K; with a program V_H before its first change, which may be 0.
-    pub loading: Loading,
+    /// What moves; with a program at V_H before its first change, which may be 0.
+    pub system: AnySystem,
     /// How V_H changes on the way, where it does.
     pub program: Option<Program>,
-    /// Where it starts.
-    pub start: Point,
+    /// The states among which it stays.
+    pub subspace: Subspace,
+    /// The values of these states at the start.
+    pub start: Vector,
     /// Where the run begins anew from known points of the same solution, as an orbit from its shooting nodes: their times, ascending,
     /// and the points. Empty for a run from its start alone.
-    pub nodes: Vec<(f64, Point)>,
-    /// What is integrated.
-    pub dimension: Dimension,
+    pub nodes: Vec<(f64, Vector)>,
     /// End of the run.
     pub until: f64,
     /// When there are rows.
@@ -148,6 +121,10 @@ pub struct Plan {
     pub method: Choice,
     /// The tolerances.
     pub tolerances: Tolerances,
+    /// Whether the absolute one is the user's, in the system's own units.
+    pub atol_is_given: bool,
+    /// The units in which the run begins, which grow with it.
+    pub units: MotionUnits,
     /// The bound on steps.
     pub max_steps: usize,
 }
@@ -162,70 +139,41 @@ impl Plan {
         let program = program
             .map(|text| Program::read(text, until(options)?))
             .transpose()?;
-        let (system, loading) = match &program {
-            None => {
-                let system = System::new(&options.model)?;
-                let loading = system.loading()?;
-                (system, loading)
-            }
-            Some(program) => System::programmed(&options.model, program)?,
-        };
-        let of_many = [
-            ("participation", options.participation.is_some()),
-            ("plot-events", options.plot_events.is_some()),
-        ];
-        if let Some((name, _)) = of_many.into_iter().find(|(_, asked)| *asked) {
-            return Err(Error::Input(format!(
-                "`{name}` is for the events of three or more interfaces; for one or two `events` has everything"
-            )));
-        }
-        let text = options.start.as_deref().unwrap_or(USUAL_START);
-        let start = start(text, &system, &loading)?;
-        let dimension = Dimension::of(&system, &start);
-        let until = system.units.inward(Quantity::Time, until(options)?);
-        let sampling = sampling(options, &system.units, until)?;
-        let mut columns = run_columns(system.interfaces);
+        let system = AnySystem::in_time(&options.model, program.as_ref())?;
+        let events = events(options, &system)?;
+        let start = system.start(options.start.as_deref())?;
+        let until = system.units().inward(Quantity::Time, until(options)?);
+        let sampling = sampling(options, system.units(), until)?;
+        let mut columns = run_columns(&system);
         columns.extend(program.as_ref().map(|_| driving_column()));
         if let Some(names) = &options.columns {
             columns = Column::listed(&columns, names)?;
         }
-        let (method, tolerances) = numerics(&options.numerics, &system.units)?;
-        Ok(Plan {
-            loading,
+        let (method, tolerances) = system.numerics(&options.numerics)?;
+        let atol_is_given = options.numerics.atol.is_some();
+        let units = system.units_of_lasting_run((&start, BEGIN), until, atol_is_given)?;
+        let (subspace, start) = system.reduced(start);
+        let plan = Plan {
             program,
+            subspace,
             start,
             nodes: Vec::new(),
-            dimension,
             until,
             sampling,
             columns,
-            events: options
-                .events
-                .as_ref()
-                .map(|_| options.event_threshold.unwrap_or(EVENT_THRESHOLD)),
+            events,
             picture: options.plot.is_some(),
             estimate: (options.estimate_error || options.reference)
                 .then(|| Companion::of(tolerances, options.reference)),
             asked_method: options.numerics.method.clone(),
             method,
             tolerances,
+            atol_is_given,
+            units,
             max_steps: options.numerics.max_steps,
             system,
-        })
-        .and_then(Plan::checked)
-    }
-
-    fn checked(self) -> Result<Self> {
-        if let Some(threshold) = self.events {
-            // Below 1 the excursions would not be slip faster than V_H, which is what an event is.
-            if threshold < 1.0 {
-                return Err(Error::parameter("event-threshold", threshold, "at least 1"));
-            }
-        }
-        if self.max_steps == 0 {
-            return Err(Error::parameter("max-steps", 0, "at least 1"));
-        }
-        self.stretches().map(|_| self)
+        };
+        plan.stretches().map(|_| plan)
     }
 
     /// The stretches of the run, one after the other.
@@ -233,24 +181,30 @@ impl Plan {
     /// # Errors
     /// [`Error::Parameter`] for a program whose velocities are beyond doubles without their unit.
     pub fn stretches(&self) -> Result<Vec<Stretch>> {
-        let driving = self.loading.driving;
+        let driving = self.system.driving();
         if let Some(program) = &self.program {
-            return program.stretches(driving, self.until, &self.system.units);
+            return program.stretches(driving, self.until, self.system.units());
         }
-        let begins = [(0.0, self.start)]
-            .into_iter()
-            .chain(self.nodes.iter().copied());
-        let ends = self.nodes.iter().map(|&(time, _)| time).chain([self.until]);
-        let stretch = |((begin, from), end)| Stretch {
-            from: Some(from),
-            ..Stretch::new((begin, end), (driving, driving))
+        let times = || self.nodes.iter().map(|&(time, _)| time);
+        let begins = [BEGIN].into_iter().chain(times());
+        let spans = begins.zip(times().chain([self.until]));
+        let stretch = |span| Stretch {
+            span,
+            driving: (driving, driving),
         };
-        Ok(begins.zip(ends).map(stretch).collect())
+        Ok(spans.map(stretch).collect())
+    }
+
+    /// The absolute tolerance as it is told: as the run begins.
+    pub fn told_atol(&self) -> Value {
+        let atol = self.tolerances.atol;
+        self.system
+            .absolute_tolerance(&self.units, atol, self.atol_is_given)
     }
 
     /// The columns of the points of a picture.
     pub fn pictured(&self) -> Vec<Column<Instant>> {
-        let mut columns = pictured_columns(self.system.interfaces);
+        let mut columns = pictured_columns(&self.system);
         columns.extend(self.program.as_ref().map(|_| driving_column()));
         columns
     }
@@ -270,19 +224,40 @@ impl Plan {
     }
 }
 
+/// The threshold of stick-slip events over V_H, where they are asked for.
+fn events(options: &IntegrateOptions, system: &AnySystem) -> Result<Option<f64>> {
+    let of_many = [
+        ("participation", options.participation.is_some()),
+        ("plot-events", options.plot_events.is_some()),
+    ];
+    if let Some((name, _)) = of_many.into_iter().find(|(_, asked)| *asked) {
+        return Err(Error::Input(format!(
+            "`{name}` is for the events of three or more interfaces with a built-in law; for one or two `events` has everything"
+        )));
+    }
+    if options.events.is_none() {
+        return Ok(None);
+    }
+    if !matches!(system.clusters(), [1] | [1, 1]) {
+        return Err(Error::Input(
+            "`events` are stick-slip events of one or two interfaces, or of three and more with a built-in law and without `clusters`"
+                .into(),
+        ));
+    }
+    let threshold = options.event_threshold.unwrap_or(EVENT_THRESHOLD);
+    // Below 1 the excursions would not be slip faster than V_H, which is what an event is.
+    if threshold < 1.0 {
+        return Err(Error::parameter("event-threshold", threshold, "at least 1"));
+    }
+    Ok(Some(threshold))
+}
+
 /// The end of a run, in the user's units.
 pub(super) fn until(options: &IntegrateOptions) -> Result<f64> {
     let until = options
         .until
         .ok_or_else(|| Error::Input("`until` T is missing: the end time of the run".into()))?;
     positive("until", until)
-}
-
-/// The method and the tolerances, checked.
-pub(super) fn numerics(options: &NumericsOptions, units: &Units) -> Result<(Choice, Tolerances)> {
-    let tolerances = tolerances(options.rtol, options.atol)?;
-    let tolerances = stepping(tolerances, options.max_step, units)?;
-    Ok((Choice::named(&options.method)?, tolerances))
 }
 
 /// The tolerances of a run in (tau, ln psi), both those of rtol where atol is not given.
@@ -319,6 +294,40 @@ pub(super) fn stepping(
 pub(super) fn longest_in_words(tolerances: Tolerances, units: &Units) -> String {
     let longest = units.max_step(tolerances);
     longest.map_or_else(String::new, |h| format!(", none longer than {h}"))
+}
+
+/// The variables that are integrated, in words.
+pub(super) fn dimension_in_words(system: &AnySystem, subspace: Subspace, start: &Vector) -> String {
+    let count = start.len();
+    if !system.slides() {
+        let forced = if system.is_timed() {
+            ", driven by t"
+        } else {
+            ""
+        };
+        return format!("{count}: {}{forced}", system.states().join(", "));
+    }
+    match (subspace, count) {
+        (Subspace::Symmetric, _) => {
+            "2: psi1 = psi2 at the start, so the run stays in the symmetric subspace (tau, ln psi) for ever".into()
+        }
+        (_, 2) if system.clusters() == [1] => "2: one interface, (tau, ln psi)".into(),
+        (_, 3) if system.differ() => "3: the interfaces differ, (tau, ln psi1, ln psi2)".into(),
+        (_, 3) if start[1] != start[2] => {
+            "3: psi1 and psi2 differ, (tau, ln psi1, ln psi2)".into()
+        }
+        _ => format!("{count}: {}", system.states().join(", ")),
+    }
+}
+
+/// The absolute tolerance in words, where it follows the states and where it is one number for all.
+pub(super) fn tolerance_in_words(system: &AnySystem, atol: f64, told: &Value) -> String {
+    let of = match (system.slides(), told.is_array()) {
+        (true, _) => "on (tau, ln psi)",
+        (false, true) => "of how far each state has come",
+        (false, false) => "on every state",
+    };
+    format!("atol {atol:e} {of}")
 }
 
 /// So many rows, both ends included.

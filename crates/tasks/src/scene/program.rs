@@ -40,20 +40,9 @@ pub struct Stretch {
     pub span: (f64, f64),
     /// V_H at both.
     pub driving: (f64, f64),
-    /// tau and ln psi of both interfaces at its begin; `None` where it goes on from the stretch before.
-    pub from: Option<(f64, [f64; 2])>,
 }
 
 impl Stretch {
-    /// One that goes on from the stretch before.
-    pub fn new(span: (f64, f64), driving: (f64, f64)) -> Self {
-        Stretch {
-            span,
-            driving,
-            from: None,
-        }
-    }
-
     /// dV_H/dt.
     pub fn rate(&self) -> f64 {
         let (from, to) = self.driving;
@@ -133,19 +122,20 @@ impl Program {
             inward if inward.is_finite() => Ok(inward),
             _ => Err(Error::parameter("program", v, "a velocity within doubles")),
         };
+        let stretch = |span, driving| Stretch { span, driving };
         let (mut stretches, mut now, mut driving) = (Vec::new(), 0.0, first);
         for change in &self.changes {
             let (from, next) = (time(change.time), velocity(change.driving)?);
             if from > now {
-                stretches.push(Stretch::new((now, from), (driving, driving)));
+                stretches.push(stretch((now, from), (driving, driving)));
             }
             if let Some(until) = change.until {
-                stretches.push(Stretch::new((from, time(until)), (driving, next)));
+                stretches.push(stretch((from, time(until)), (driving, next)));
             }
             (now, driving) = (time(change.end()), next);
         }
         // Also where it ends with a change: the run then ends on its far side.
-        stretches.push(Stretch::new((now, end), (driving, driving)));
+        stretches.push(stretch((now, end), (driving, driving)));
         Ok(stretches)
     }
 }

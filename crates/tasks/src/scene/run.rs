@@ -1,19 +1,16 @@
 //! From a plan to rows: one flow, or one for each stretch of a program, watched only as far as the plan needs.
 
-use super::column::Column;
+use super::equations::Equations;
 use super::estimate::{estimate, timed};
-use super::event::{Detector, SlipEvent};
-use super::instant::Instant;
+use super::event::SlipEvent;
 use super::many::{Catalogue, ManyCheckpoint};
-use super::plan::{Plan, Point, Sampling};
+use super::observer::RunObserver;
+use super::plan::Plan;
 use super::program::Stretch;
-use super::slip::{Slips, at, slips};
-use super::stretch::{Along, as_field, go, of_run, point, steps_left};
+use super::system::Described;
 use twinslip::error::{Error, Result};
-use twinslip::field::State;
-use twinslip::integrate::{Control, Step, Work};
-use twinslip::model::Driven;
-use twinslip::number::DoubleDouble;
+use twinslip::field::Vector;
+use twinslip::integrate::{AnyIntegrator, AnyObserver, AnyStep, Control, MotionUnits, Work};
 
 /// Points of a picture in each step: steps are long where the solution is smooth, and a polygon would show.
 pub(super) const PICTURED: usize = 4;
@@ -52,8 +49,8 @@ pub struct RunOutcome {
     /// Estimate of the global error of the last row, the largest of all states, not below it: relative to stress and psi, and of a
     /// user-defined system in units of 1 + |x|. `None` where not asked for or not known.
     pub error_estimate: Option<f64>,
-    /// Estimates of the global errors of all states of a user-defined system at its end, not below them; `None` where not asked for or
-    /// not known, and of interfaces that are built in.
+    /// Estimates of the global errors of all states at the end, not below them, in the user's units; `None` where not asked for or not
+    /// known.
     pub errors: Option<Vec<f64>>,
     /// Why the error could not be estimated.
     pub estimate_failure: Option<Error>,
@@ -69,264 +66,177 @@ pub struct RunOutcome {
 /// [`Error::Parameter`] if the integrator refuses its settings; a failure on the way is in [`RunOutcome::failure`].
 pub fn run(plan: &Plan, sink: &mut dyn Sink) -> Result<RunOutcome> {
     let mut run = Run {
+        plan,
         watch: RunObserver::new(plan, &mut *sink),
+        units: plan.units.clone(),
         work: Work::default(),
     };
-    let end = go(plan, &mut run);
+    let end = along(plan, |part, from| {
+        run.watch.begin(part.stretch, &from);
+        match part.is_empty() {
+            true => Ok((from, false)),
+            false => run.part(part, from),
+        }
+    });
+    let Run {
+        watch, units, work, ..
+    } = run;
+    let end = end.map_err(|error| of_run(plan, error));
     if let Err(error @ Error::Parameter { .. }) = end {
         return Err(error);
     }
-    let Run { watch, work } = run;
     let mut outcome = watch.finish(&end);
     outcome.work = work;
     match (end, plan.estimate) {
         (Ok(end), Some(companion)) if !outcome.stopped => {
-            estimate(companion, plan, &end, &mut outcome, sink)?;
+            estimate(companion, plan, (&end, &units), &mut outcome, sink);
         }
         (Err(error @ (Error::BlowUp { .. } | Error::TooFast { .. })), _) => {
             outcome.failure = Some(timed(error, plan, &mut outcome, sink)?);
         }
         _ => {}
     }
-    let told = |error: Error| plan.system.units.told(error);
+    let told = |error: Error| plan.system.units().told(error);
     outcome.failure = outcome.failure.map(told);
     outcome.estimate_failure = outcome.estimate_failure.map(told);
     Ok(outcome)
 }
 
-/// The run itself, along its stretches: on each the integrator starts anew.
+/// A run on its way.
 struct Run<'a> {
+    plan: &'a Plan,
     watch: RunObserver<'a>,
+    /// They grow as states come far beyond them.
+    units: MotionUnits,
     work: Work,
 }
 
-impl Along for Run<'_> {
-    fn along<const N: usize>(
-        &mut self,
-        stretch: &Stretch,
-        field: &dyn Driven<N>,
-        from: &State<N>,
-    ) -> Result<State<N>> {
-        let (plan, span) = (self.watch.plan, stretch.span);
-        self.watch.begin(stretch, field, from);
-        if span.0 == span.1 {
-            return Ok(*from);
-        }
-        let left = steps_left(plan, stretch, &self.work)?;
-        let mut integrator = plan.method.integrator::<N>(plan.tolerances, left)?;
-        let end = if plan.observed() {
-            let mut observer = |step: &Step<'_, N>| self.watch.see(field, step);
-            integrator.flow(as_field(field), span, from, Some(&mut observer))
-        } else {
-            integrator.flow(as_field(field), span, from, None)
-        };
-        self.work += integrator.work();
-        end.map_err(|error| of_run(plan, error))
-    }
-
-    fn stopped(&self) -> bool {
-        self.watch.stopped
-    }
-}
-
-/// Sees the steps of a run and makes rows, slips and events of them.
-struct RunObserver<'a> {
-    plan: &'a Plan,
-    sink: &'a mut dyn Sink,
-    detector: Option<Detector>,
-    /// Whether nothing but the end is shown.
-    only_end: bool,
-    /// How V_H is here.
-    stretch: Stretch,
-    /// The end of the last step seen.
-    here: Instant,
-    /// The slips there, in all digits.
-    slips: Slips,
-    row: Vec<f64>,
-    pictured: Vec<Column<Instant>>,
-    /// Rows at fixed times made so far.
-    sampled: usize,
-    /// How many stretches have begun.
-    begun: usize,
-    /// The time of the last row.
-    shown: Option<f64>,
-    stopped: bool,
-}
-
-impl<'a> RunObserver<'a> {
-    fn new(plan: &'a Plan, sink: &'a mut dyn Sink) -> Self {
-        let (laws, driving) = (plan.system.laws(), plan.loading.driving);
-        let (stress, log_state) = plan.start;
-        RunObserver {
-            plan,
-            sink,
-            detector: plan
-                .detected()
-                .map(|threshold| Detector::new(plan, threshold)),
-            only_end: plan.sampling == Sampling::FinalOnly
-                && plan.events.is_none()
-                && !plan.picture,
-            stretch: Stretch::new((0.0, 0.0), (driving, driving)),
-            here: Instant {
-                laws,
-                time: 0.0,
-                stress,
-                log_state,
-                slip: [0.0; 2],
-                driving,
-            },
-            slips: [DoubleDouble::ZERO; 2],
-            row: Vec::new(),
-            pictured: plan.pictured(),
-            sampled: 0,
-            begun: 0,
-            shown: None,
-            stopped: false,
-        }
-    }
-
-    /// A stretch begins: the first one with the first row, the others with one at either side of a change.
-    fn begin<const N: usize>(&mut self, stretch: &Stretch, field: &dyn Driven<N>, from: &State<N>) {
-        let first = self.begun == 0;
-        self.begun += 1;
-        if let Some(detector) = &mut self.detector {
-            detector.begin(stretch, field, from, &self.slips);
-        }
-        let rows = self.plan.sampling != Sampling::FinalOnly;
-        let changes = !first && stretch.from.is_none();
-        if rows && changes && self.shown != Some(stretch.span.0) {
-            let before = self.here;
-            self.emit(&before);
-        }
-        let jumps = stretch.driving.0 != self.stretch.driving.1;
-        self.stretch = *stretch;
-        let slips = self.slips.map(DoubleDouble::hi);
-        self.here = Instant {
-            driving: stretch.driving.0,
-            ..self.here.at(stretch.span.0, point(self.plan, from), slips)
-        };
-        let here = self.here;
-        if self.plan.picture {
-            self.draw(&here);
-        }
-        if rows && (first || jumps) {
-            self.emit(&here);
-        }
-        if first && rows {
-            self.sampled = 1;
-        }
-    }
-
-    fn see<const N: usize>(
-        &mut self,
-        field: &dyn Driven<N>,
-        step: &Step<'_, N>,
-    ) -> Result<Control> {
-        let before = self.slips;
-        if let Some(detector) = &mut self.detector {
-            detector.see(field, step, &before)?;
-        }
-        let needs_slip = self.plan.needs_slip();
-        let slip = |t: f64| {
-            if needs_slip {
-                slips(field, step, &before, t)
-            } else {
-                before
-            }
-        };
-        let (plan, here, stretch) = (self.plan, self.here, self.stretch);
-        let instant = |t: f64, slips: Slips| Instant {
-            driving: stretch.driving_at(t),
-            ..here.at(t, point(plan, &at(step, t)), slips.map(DoubleDouble::hi))
-        };
-        while let Some(t) = self.next_sample().filter(|&t| t <= step.t1) {
-            self.emit(&instant(t, slip(t)));
-            self.sampled += 1;
-        }
-        if self.plan.picture {
-            for part in 1..=PICTURED {
-                let t = step.t0 + (step.t1 - step.t0) * part as f64 / PICTURED as f64;
-                self.draw(&instant(t, before));
-            }
-        }
-        self.slips = slip(step.t1);
-        self.here = instant(step.t1, self.slips);
-        if self.plan.sampling == Sampling::EveryStep {
-            let here = self.here;
-            self.emit(&here);
-        }
-        Ok(self.reached())
-    }
-
-    /// The run has come to the end of a step.
-    fn reached(&mut self) -> Control {
-        if self.sink.reached(self.here.time / self.plan.until) == Control::Stop {
-            self.stopped = true;
-        }
-        match (self.stopped, self.only_end) {
-            (true, _) => Control::Stop,
-            (false, true) => Control::Rest(RESTS),
-            (false, false) => Control::Continue,
-        }
-    }
-
-    /// The next fixed time of a row.
-    fn next_sample(&self) -> Option<f64> {
+impl Run<'_> {
+    /// Goes along a part; where it ends, and whether to go no further.
+    fn part(&mut self, part: &Part<'_>, from: Vector) -> Result<(Vector, bool)> {
+        /// How often units grow: where states go to infinity nothing is to be gained.
+        const LEGS: usize = 8;
         let plan = self.plan;
-        let end = match plan.program {
-            Some(_) => self.stretch.span.1,
-            None => plan.until,
-        };
-        let units = &plan.system.units;
-        plan.sampling.time(self.sampled, (plan.until, end), units)
-    }
-
-    fn draw(&mut self, at: &Instant) {
-        fill(&mut self.row, &self.pictured, self.plan, at);
-        self.sink.drawn(&self.row);
-    }
-
-    fn emit(&mut self, at: &Instant) {
-        fill(&mut self.row, &self.plan.columns, self.plan, at);
-        self.shown = Some(at.time);
-        if self.sink.row(&self.row) == Control::Stop {
-            self.stopped = true;
-        }
-    }
-
-    fn finish(mut self, end: &Result<Point>) -> RunOutcome {
-        let plan = self.plan;
-        let known = end.is_ok() || plan.observed();
-        if let Ok(point) = end
-            && !self.stopped
-        {
-            self.here = Instant {
-                driving: self.stretch.driving.1,
-                ..self.here.at(plan.until, *point, self.here.slip)
+        let (mut now, end) = part.stretch.span;
+        let mut legs = 1;
+        let mut here = part.units(&self.units).inward(&from);
+        let have_logarithms = part.equations.have_logarithms();
+        let sinks = have_logarithms.contains(&true);
+        loop {
+            let units = part.units(&self.units);
+            self.watch.in_units(&units);
+            let field = part.equations.field(&units)?;
+            let left = steps_left(plan, part.stretch, &self.work)?;
+            let tolerances = units.inward_tolerances(plan.tolerances, plan.atol_is_given);
+            let mut integrator = AnyIntegrator::new(plan.method, tolerances, left)?;
+            let grow = !plan.atol_is_given && !part.equations.keep_units() && legs < LEGS;
+            let mut outgrown = None;
+            let watch = &mut self.watch;
+            let mut observer = |step: &AnyStep<'_>| {
+                let told = match plan.observed() {
+                    true => watch.see(&field, step)?,
+                    false => Control::Rest(RESTS),
+                };
+                if told == Control::Stop {
+                    return Ok(told);
+                }
+                let sunken = sinks.then(|| units.sunken(&have_logarithms, step.y1));
+                let larger = || grow.then(|| units.outgrown(step.y1)).flatten();
+                if let Some(larger) = sunken.flatten().or_else(larger) {
+                    let reached = units.moved(&larger, step.y1);
+                    outgrown = Some((step.t1 * units.time, reached, larger));
+                    return Ok(Control::Stop);
+                }
+                Ok(told)
             };
-        }
-        if plan.sampling == Sampling::FinalOnly && end.is_ok() && !self.stopped {
-            let here = self.here;
-            self.emit(&here);
-        }
-        fill(&mut self.row, &plan.columns, plan, &self.here);
-        RunOutcome {
-            last: known.then_some(self.row),
-            events: self.detector.map_or_else(Vec::new, Detector::into_events),
-            catalogue: None,
-            work: Work::default(),
-            error_estimate: None,
-            errors: None,
-            estimate_failure: None,
-            failure: end.as_ref().err().cloned(),
-            stopped: self.stopped,
+            let seen = plan.observed() || grow || sinks;
+            let observer = seen.then_some(&mut observer as AnyObserver<'_>);
+            let span = (now / units.time, end / units.time);
+            let reached = integrator.flow(&field, span, &here, observer);
+            self.work += integrator.work();
+            match (reached, outgrown) {
+                (Ok(_), Some((time, state, larger))) if time < end => {
+                    (now, here, self.units) = (time, state, larger);
+                    legs += 1;
+                }
+                (Ok(state), _) => return Ok((units.outward(&state), self.watch.stopped())),
+                (Err(error), _) => return Err(units.outward_error(error, 0)),
+            }
         }
     }
 }
 
-/// Fills a row with the columns at an instant, in the user's units.
-fn fill(row: &mut Vec<f64>, columns: &[Column<Instant>], plan: &Plan, at: &Instant) {
-    let units = &plan.system.units;
-    row.clear();
-    row.extend(columns.iter().map(|column| column.number(at, units)));
+/// A stretch of a run with its equations.
+pub(super) struct Part<'a> {
+    pub stretch: &'a Stretch,
+    pub equations: &'a Equations<'a>,
+}
+
+impl Part<'_> {
+    /// A run that ends with a change has an end on the far side of that.
+    pub fn is_empty(&self) -> bool {
+        self.stretch.span.0 == self.stretch.span.1
+    }
+
+    /// On a ramp V_H is a variable more.
+    pub fn units(&self, of_run: &MotionUnits) -> MotionUnits {
+        match self.equations.keep_units() {
+            true => MotionUnits::given(self.equations.variables()),
+            false => of_run.clone(),
+        }
+    }
+}
+
+/// Goes along all stretches of a plan: each begins where the last has ended, or at a node.
+pub(super) fn along(
+    plan: &Plan,
+    mut by: impl FnMut(&Part<'_>, Vector) -> Result<(Vector, bool)>,
+) -> Result<Vector> {
+    let count = plan.start.len();
+    let mut here = plan.start.clone();
+    for (i, stretch) in plan.stretches()?.into_iter().enumerate() {
+        if let Some((_, node)) = i.checked_sub(1).and_then(|i| plan.nodes.get(i)) {
+            here.clone_from(node);
+        }
+        let equations = plan.system.on(&stretch, plan.subspace)?;
+        let part = Part {
+            stretch: &stretch,
+            equations: &equations,
+        };
+        if equations.has_driving(count) {
+            here = here.push(stretch.driving.0);
+        } else if equations.is_timed() {
+            here = here.push(stretch.span.0);
+        }
+        let (end, stopped) = by(&part, here)?;
+        here = end.rows(0, count).into_owned();
+        if stopped {
+            break;
+        }
+    }
+    Ok(here)
+}
+
+/// How many steps a run may still take that comes to this stretch.
+pub(super) fn steps_left(plan: &Plan, stretch: &Stretch, work: &Work) -> Result<usize> {
+    match plan.max_steps.saturating_sub(work.steps) {
+        0 => Err(Error::TooManySteps {
+            t: stretch.span.0,
+            end: plan.until,
+            limit: plan.max_steps,
+        }),
+        left => Ok(left),
+    }
+}
+
+/// The error of a stretch as one of the run.
+pub(super) fn of_run(plan: &Plan, error: Error) -> Error {
+    match error {
+        Error::TooManySteps { t, .. } => Error::TooManySteps {
+            t,
+            end: plan.until,
+            limit: plan.max_steps,
+        },
+        other => other,
+    }
 }

@@ -1,17 +1,17 @@
-//! The slips of both interfaces along a run: term by term where a step is a series, else by quadrature.
+//! The slips of all interfaces along a run: term by term where a step is a series, else by quadrature.
 
-use twinslip::field::State;
-use twinslip::integrate::Step;
-use twinslip::model::Driven;
+use super::any_system::{AnySystem, SlipRate};
+use super::equations::Subspace;
+use twinslip::integrate::AnyStep;
 use twinslip::number::DoubleDouble;
 
 /// Slips since the start. Many small steps are summed, and the slips of short events are differences of long sums: in 31
 /// digits neither loses any that the steps have.
-pub(super) type Slips = [DoubleDouble; 2];
+pub(super) type Slips = Vec<DoubleDouble>;
 
 /// Nodes and weights of the Gauss-Legendre quadrature with five points on (0, 1): exact to degree 9, more than the dense
 /// output has.
-pub(super) const GAUSS: [(f64, f64); 5] = [
+const GAUSS: [(f64, f64); 5] = [
     (0.046_910_077_030_668_004, 0.118_463_442_528_094_54),
     (0.230_765_344_947_158_45, 0.239_314_335_249_683_23),
     (0.5, 0.284_444_444_444_444_44),
@@ -19,50 +19,87 @@ pub(super) const GAUSS: [(f64, f64); 5] = [
     (0.953_089_922_969_332, 0.118_463_442_528_094_54),
 ];
 
+/// The slip rates of the interfaces of a run, or of its clusters of equal ones.
+#[derive(Clone)]
+pub(super) struct SlipRates {
+    of: SlipRate,
+    subspace: Subspace,
+    /// How many interfaces each stands for.
+    counts: Vec<usize>,
+}
+
+impl SlipRates {
+    pub fn of(system: &AnySystem, subspace: Subspace) -> Self {
+        SlipRates {
+            of: system.slip_rate(),
+            subspace,
+            counts: system.clusters().to_vec(),
+        }
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.counts.len()
+    }
+
+    /// How many interfaces each stands for.
+    pub fn counts(&self) -> &[usize] {
+        &self.counts
+    }
+
+    /// Each of them, at variables that begin with those of the subspace.
+    pub fn each(&self, y: &[f64]) -> impl Iterator<Item = f64> {
+        let variables = match self.subspace {
+            Subspace::Whole => self.counts.len() + 1,
+            Subspace::Symmetric => 2,
+        };
+        let mut states = Vec::with_capacity(self.counts.len() + 1);
+        self.subspace.whole(&y[..variables], &mut states);
+        (0..self.counts.len()).map(move |i| (self.of)(i, &states))
+    }
+
+    /// Their sum over all interfaces.
+    pub fn total(&self, y: &[f64]) -> f64 {
+        let each = self.each(y).zip(&self.counts);
+        each.map(|(v, &count)| count as f64 * v).sum()
+    }
+}
+
 /// The slips at t, from those at the beginning of the step. Always from there, so that a slip does not depend on which rows
 /// are asked for. In 2-D the balance K (V_H t - n slip) = tau - tau(0) would do, but loses digits where K is small.
-pub(super) fn slips<const N: usize>(
-    field: &dyn Driven<N>,
-    step: &Step<'_, N>,
-    before: &Slips,
+pub(super) fn slips(
+    rates: &SlipRates,
+    step: &AnyStep<'_>,
+    before: &[DoubleDouble],
     t: f64,
-) -> Slips {
+    into: &mut Slips,
+) {
+    into.clear();
     if t == step.t1
         && let Some(within) = step.slips()
     {
-        return [0, 1].map(|i| before[i] + within[i]);
+        let both = before.iter().zip(within);
+        into.extend(both.map(|(before, within)| *before + within));
+        return;
     }
     let time = step.since_begin(t);
-    let within = match step.series() {
-        Some(series) => series.slips(time),
-        None => quadrature(field, step, time),
-    };
-    sum(before, within)
-}
-
-pub(super) fn sum(before: &Slips, within: [f64; 2]) -> Slips {
-    [0, 1].map(|i| before[i] + within[i])
+    if let Some(series) = step.series() {
+        let each = before.iter().enumerate();
+        into.extend(each.map(|(i, before)| *before + series.slip(i, time)));
+        return;
+    }
+    let both = before.iter().zip(quadrature(rates, step, time));
+    into.extend(both.map(|(before, within)| *before + within));
 }
 
 /// The slips within a time h from the beginning of the step, along the dense output.
-fn quadrature<const N: usize>(field: &dyn Driven<N>, step: &Step<'_, N>, h: f64) -> [f64; 2] {
-    let mut slips = [0.0; 2];
+fn quadrature(rates: &SlipRates, step: &AnyStep<'_>, h: f64) -> Vec<f64> {
+    let mut slips = vec![0.0; rates.count()];
     for (node, weight) in GAUSS {
-        let v = field.slip_rates(&step.after(node * h));
-        for (slip, v) in slips.iter_mut().zip(v) {
+        let y = step.after(node * h);
+        for (slip, v) in slips.iter_mut().zip(rates.each(y.as_slice())) {
             *slip += weight * h * v;
         }
     }
     slips
-}
-
-/// The dense output, and exactly the step's own states at its ends.
-pub(super) fn at<const N: usize>(step: &Step<'_, N>, t: f64) -> State<N> {
-    if t == step.t1 {
-        *step.y1
-    } else if t == step.t0 {
-        *step.y0
-    } else {
-        step.dense(t)
-    }
 }

@@ -3,6 +3,7 @@
 use super::event::SlipEvent;
 use super::plan::{EVENT_THRESHOLD, Plan, Sampling};
 use super::run::RunOutcome;
+use super::system::Described;
 use super::units::Quantity;
 use twinslip::friction::critical_stiffness;
 
@@ -58,7 +59,7 @@ impl FaultSummary {
     /// that, and there is nothing to recur.
     pub fn new(plan: &Plan, outcome: &RunOutcome) -> Option<Self> {
         plan.detected()?;
-        let units = &plan.system.units;
+        let units = plan.system.units();
         if !units.si() || plan.program.is_some() {
             return None;
         }
@@ -82,23 +83,23 @@ impl FaultSummary {
 }
 
 fn criticality(plan: &Plan) -> Option<Criticality> {
-    let system = &plan.system;
+    let (system, loading) = plan.system.closed_forms()?;
     if system.unequal.is_some() {
         return None;
     }
     // The stress of one spring falls with the slip of all interfaces.
     let count = system.interfaces as f64;
-    let critical = critical_stiffness(&system.law, plan.loading.driving / count) / count;
+    let critical = critical_stiffness(&system.law, loading.driving / count) / count;
     Some(Criticality {
         stiffness: system.units.outward(Quantity::Stiffness, critical),
-        ratio: (critical > 0.0).then(|| plan.loading.stiffness / critical),
+        ratio: (critical > 0.0).then(|| loading.stiffness / critical),
     })
 }
 
 impl Plan {
     /// The threshold of the events that a run looks for: those that are asked for, and of a run in SI those of its summary.
     pub fn detected(&self) -> Option<f64> {
-        let summarised = self.system.units.si()
+        let summarised = self.system.units().si()
             && self.program.is_none()
             && self.sampling != Sampling::FinalOnly;
         self.events.or(summarised.then_some(EVENT_THRESHOLD))

@@ -11,35 +11,48 @@ pub fn many_event_columns(count: usize) -> Vec<Column<ManyEvent>> {
     use Quantity::{Length, Number, SlipRate, Stress, Time};
     type Row = ManyEvent;
     vec![
-        Column::new("onset", Time, |event: &Row| event.onset.into()),
-        Column::new("recurrence", Time, |event: &Row| event.recurrence.into()),
-        Column::new("duration", Time, |event: &Row| event.duration.into()),
+        Column::new("onset", Time, |event: &Row| event.onset.into())
+            .meaning("time at which the event begins"),
+        Column::new("recurrence", Time, |event: &Row| event.recurrence.into())
+            .meaning("time since the onset of the event before"),
+        Column::new("duration", Time, |event: &Row| event.duration.into())
+            .meaning("time from the beginning of the event to its end"),
         Column::new("stress_before", Stress, |event: &Row| {
             event.stress_before.into()
-        }),
+        })
+        .meaning("stress at the onset"),
         Column::new("stress_drop", Stress, |event: &Row| {
             event.stress_drop.into()
-        }),
+        })
+        .meaning("stress at the beginning of the event minus that at its end"),
         Column::new("peak_slip_rate", SlipRate, |event: &Row| {
             event.peak_slip_rate.into()
-        }),
+        })
+        .meaning("largest slip rate of all interfaces together"),
         Column::new("participants", Number, |event: &Row| {
             event.participants.into()
-        }),
+        })
+        .meaning("number of interfaces that slip in the event"),
         Column::new("participation", Number, move |event: &Row| {
             participation(event, count).into()
-        }),
-        Column::new("slip", Length, |event: &Row| event.slip.into()),
+        })
+        .meaning("participants over the number of interfaces"),
+        Column::new("slip", Length, |event: &Row| event.slip.into())
+            .meaning("slip of all participants together, each while it slips"),
         Column::new("slip_mean", Length, |event: &Row| {
             (event.slip / event.participants as f64).into()
-        }),
-        Column::new("magnitude", Number, |event: &Row| event.magnitude().into()),
+        })
+        .meaning("mean slip of the participants"),
+        Column::new("magnitude", Number, |event: &Row| event.magnitude().into())
+            .meaning("log10 of the slip of the event"),
         Column::new("leader", Number, |event: &Row| {
             CellValue::Count(event.leader + 1)
-        }),
+        })
+        .meaning("interface that slips farthest in the event"),
         Column::new("first", Number, |event: &Row| {
             CellValue::Count(event.first + 1)
-        }),
+        })
+        .meaning("interface that begins the event"),
     ]
 }
 
@@ -48,13 +61,16 @@ pub fn participation_columns(drawn: &[Drawn]) -> Vec<Column<Participant>> {
     let mut columns = vec![
         Column::new("interface", Quantity::Number, |row: &Participant| {
             row.interface.into()
-        }),
+        })
+        .meaning("number of the interface"),
         Column::new("events", Quantity::Number, |row: &Participant| {
             row.did.events.into()
-        }),
+        })
+        .meaning("number of events in which the interface slipped"),
         Column::new("slip", Quantity::Length, |row: &Participant| {
             row.did.slip.into()
-        }),
+        })
+        .meaning("slip of the interface in these events"),
     ];
     let constants = drawn.iter().enumerate().map(|(i, drawn)| {
         Column::new(drawn.name, Quantity::Number, move |row: &Participant| {

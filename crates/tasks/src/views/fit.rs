@@ -21,15 +21,19 @@ pub struct FitRow {
 pub fn fit_columns() -> Vec<Column<FitRow>> {
     use Quantity::{Length, Number, Time};
     vec![
-        Column::new("time", Time, |row: &FitRow| row.time.into()),
+        Column::new("time", Time, |row: &FitRow| row.time.into()).meaning("time"),
         Column::new("displacement", Length, |row: &FitRow| {
             row.displacement.into()
-        }),
-        Column::new("observed", Number, |row: &FitRow| row.observed.into()),
-        Column::new("fitted", Number, |row: &FitRow| row.fitted.into()),
+        })
+        .meaning("displacement of the load point since the record began"),
+        Column::new("observed", Number, |row: &FitRow| row.observed.into())
+            .meaning("measured friction coefficient"),
+        Column::new("fitted", Number, |row: &FitRow| row.fitted.into())
+            .meaning("friction coefficient of the fitted model"),
         Column::new("residual", Number, |row: &FitRow| {
             (row.observed - row.fitted).into()
-        }),
+        })
+        .meaning("observed minus fitted friction"),
     ]
 }
 

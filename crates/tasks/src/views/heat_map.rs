@@ -1,8 +1,8 @@
 //! The states of a system of many variables in time, as colours: one row for each.
 
 use super::fit::in_digits;
-use super::text::with_parameters;
-use crate::scene::TextPlan;
+use super::text::parameters_of;
+use crate::scene::AnySystem;
 use twinslip_output::RowList;
 use twinslip_output::plot::{Axis, Cells, Panel, Shade, Swatch};
 
@@ -17,15 +17,10 @@ const LOW: [u8; 3] = [0, 84, 147];
 const HIGH: [u8; 3] = [196, 78, 0];
 
 /// All states between their least and their largest value: the one colour below the middle, the other above it.
-pub fn states_in_time(plan: &TextPlan, rows: &RowList) -> Panel {
+pub fn states_in_time(system: &AnySystem, rows: &RowList) -> Panel {
     let column = |name: &str| rows.column(name).unwrap_or_default();
-    let states: Vec<Vec<f64>> = plan
-        .model
-        .system
-        .states()
-        .iter()
-        .map(|name| column(name))
-        .collect();
+    let states = system.states();
+    let states: Vec<Vec<f64>> = states.iter().map(|name| column(name)).collect();
     let all = || states.iter().flatten().copied().filter(|x| x.is_finite());
     let least = all().fold(f64::INFINITY, f64::min);
     let most = all().fold(f64::NEG_INFINITY, f64::max);
@@ -51,7 +46,7 @@ pub fn states_in_time(plan: &TextPlan, rows: &RowList) -> Panel {
     Panel {
         cells: Some(cells),
         ..Panel::new(
-            with_parameters(&plan.model),
+            parameters_of(system),
             Axis::linear("time t"),
             Axis::linear("number of the state").within(number(0), number(states.len())),
         )

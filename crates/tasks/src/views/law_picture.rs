@@ -56,7 +56,7 @@ pub fn picture_of_law(units: &Units, curves: &[LawCurve]) -> Drawing {
         mark(i, (at, stress(extremum.stress.value)), names).side(side)
     });
     let friction = Panel {
-        series: lines(&|at| stress(at.stress)),
+        series: lines(&|at| stress(at.stress.value)),
         marks: marks.collect(),
         ..Panel::new("steady-state friction", x.clone(), Axis::linear(friction))
     };

@@ -1,59 +1,118 @@
 //! What periodic orbits show.
 
-use crate::scene::{Column, Quantity};
+use crate::scene::{AnySystem, Column, OrbitPlan, Quantity};
 use twinslip::orbit::Orbit;
 
-/// The columns of periodic orbits of so many interfaces; a table has room for what is looked at first.
-pub fn orbit_columns(interfaces: usize) -> Vec<Column<Orbit>> {
-    use Quantity::{LogState, Number, SlipRate, State, Stress, Time};
-    let mut columns = vec![
-        Column::new("symmetry", Number, |orbit: &Orbit| {
-            orbit.symmetry.name().into()
-        })
-        .in_table_if(interfaces > 1),
-        Column::uncertain("period", Time, |orbit: &Orbit| orbit.period.into()),
-        Column::uncertain("stress_min", Stress, |orbit: &Orbit| {
-            orbit.stress_min.into()
-        }),
-        Column::uncertain("stress_max", Stress, |orbit: &Orbit| {
-            orbit.stress_max.into()
-        }),
-        Column::new("slip_rate_max", SlipRate, |orbit: &Orbit| {
-            orbit.slip_rate_max.into()
-        }),
-        Column::new("state_min", State, |orbit: &Orbit| orbit.state_min.into()),
-    ];
-    for i in 0..interfaces {
+/// The columns of periodic orbits; a table has room for what is looked at first.
+pub fn orbit_columns(plan: &OrbitPlan) -> Vec<Column<Orbit>> {
+    use Quantity::{Number, Time};
+    let system = &plan.system;
+    let (slides, interfaces) = (system.slides(), system.clusters().len());
+    let period = Column::uncertain("period", Time, |orbit: &Orbit| orbit.period.into())
+        .meaning("period of the orbit");
+    let mut columns = match slides {
+        true => {
+            let plan = plan.clone();
+            let symmetry = move |orbit: &Orbit| plan.symmetry(orbit).map(|of| of.name()).into();
+            let symmetry = Column::new("symmetry", Number, symmetry)
+                .meaning("symmetric where both interfaces move alike, else asymmetric");
+            vec![symmetry.in_table_if(interfaces > 1), period]
+        }
+        false => vec![period],
+    };
+    if slides {
+        columns.extend(of_interfaces());
+    } else {
+        columns.extend(extremes(system, 0));
+    }
+    for i in 0..system.states().len() - 1 {
         columns.extend(multiplier_columns(i));
     }
-    columns.extend([
+    columns.push(
         Column::new("verdict", Number, |orbit: &Orbit| {
             orbit.verdict().name().into()
-        }),
-        Column::new("stress", Stress, |orbit: &Orbit| orbit.point[0].into()).not_in_table(),
-    ]);
-    columns.extend((1..=interfaces).map(|i| {
-        Column::new(format!("log_state_{i}"), LogState, move |orbit: &Orbit| {
-            // Where both interfaces move alike they share a state.
-            orbit.point[i.min(orbit.point.len() - 1)].into()
         })
-        .not_in_table()
+        .meaning("stable, unstable or undecided"),
+    );
+    columns.extend(system.states().into_iter().enumerate().map(|(i, name)| {
+        let point = move |orbit: &Orbit| orbit.point[of_state(i, orbit)].into();
+        let column = Column::new(name, system.quantity(i), point).not_in_table();
+        match i {
+            0 => column.meaning("stress at the first point of the orbit"),
+            _ => column.meaning("ln ψ of interface i at the first point of the orbit"),
+        }
     }));
     columns.extend([
         Column::new("trivial_defect", Number, |orbit: &Orbit| {
             orbit.floquet.trivial_defect.into()
         })
+        .meaning("distance of the multiplier along the orbit from 1: a check")
         .not_in_table(),
         Column::new("liouville_defect", Number, |orbit: &Orbit| {
             orbit.floquet.liouville_defect.into()
         })
+        .meaning("difference between the logarithm of the product of the multipliers and the integral of the divergence: a check")
         .not_in_table(),
     ]);
+    if slides {
+        let all = extremes(system, 1).into_iter();
+        columns.extend(all.map(Column::not_in_table));
+    }
     columns
 }
 
+/// The place of a state on an orbit: where both interfaces move alike they share one.
+fn of_state(i: usize, orbit: &Orbit) -> usize {
+    i.min(orbit.point.len() - 1)
+}
+
+/// What orbits of interfaces are looked at for.
+fn of_interfaces() -> [Column<Orbit>; 4] {
+    use Quantity::{SlipRate, State, Stress};
+    [
+        Column::uncertain("stress_min", Stress, |orbit: &Orbit| {
+            orbit.stress_min.into()
+        })
+        .meaning("least stress of the orbit"),
+        Column::uncertain("stress_max", Stress, |orbit: &Orbit| {
+            orbit.stress_max.into()
+        })
+        .meaning("largest stress of the orbit"),
+        Column::new("slip_rate_max", SlipRate, |orbit: &Orbit| {
+            known(orbit.slip_rate_max).into()
+        })
+        .meaning("largest slip rate of an interface on the orbit"),
+        Column::new("state_min", State, |orbit: &Orbit| orbit.state_min.into())
+            .meaning("least ψ on the orbit"),
+    ]
+}
+
+/// A largest slip rate, which is found on power series alone.
+pub fn known(slip_rate: f64) -> Option<f64> {
+    Some(slip_rate).filter(|v| v.is_finite())
+}
+
+/// The least and the largest value of each state, from one on.
+fn extremes(system: &AnySystem, from: usize) -> Vec<Column<Orbit>> {
+    let states = system.states().into_iter().enumerate().skip(from);
+    let both = states.flat_map(|(i, name)| {
+        let quantity = system.quantity(i);
+        ["min", "max"]
+            .into_iter()
+            .enumerate()
+            .map(move |(end, which)| {
+                let value = move |orbit: &Orbit| orbit.extremes[of_state(i, orbit)][end].into();
+                Column::uncertain(format!("{name}_{which}"), quantity, value).meaning(match end {
+                    0 => "least ln ψ of interface i on the orbit",
+                    _ => "largest ln ψ of interface i on the orbit",
+                })
+            })
+    });
+    both.collect()
+}
+
 /// Of one multiplier, counted from 0. Its bound is a column of its own: no unit rounds it.
-pub(super) fn multiplier_columns(i: usize) -> [Column<Orbit>; 4] {
+fn multiplier_columns(i: usize) -> [Column<Orbit>; 4] {
     use Quantity::Number;
     let of = move |orbit: &Orbit| orbit.floquet.multipliers[i];
     let place = i + 1;
@@ -62,21 +121,25 @@ pub(super) fn multiplier_columns(i: usize) -> [Column<Orbit>; 4] {
             format!("ln_abs_multiplier_{place}"),
             Number,
             move |orbit: &Orbit| of(orbit).ln_abs.value.into(),
-        ),
+        )
+        .meaning("logarithm of the absolute value of multiplier i"),
         Column::new(
             format!("ln_abs_multiplier_{place}_uncertainty"),
             Number,
             move |orbit: &Orbit| of(orbit).ln_abs.uncertainty.into(),
         )
+        .meaning("bound on its error")
         .not_in_table(),
         Column::new(
             format!("angle_over_pi_{place}"),
             Number,
             move |orbit: &Orbit| of(orbit).known_angle().into(),
-        ),
+        )
+        .meaning("argument of the multiplier over π: 0 of a positive real one, 1 of a negative one"),
         Column::new(format!("kind_{place}"), Number, move |orbit: &Orbit| {
             of(orbit).kind.name().into()
         })
+        .meaning("kind of multiplier i: real, complex, or below floor where it is too small for its sign to be known")
         .not_in_table(),
     ]
 }

@@ -1,9 +1,10 @@
 //! Pictures of a run in time.
 
-use super::diagram::{axis_label, number, value};
+use super::diagram::{axis_label, number};
+use super::heat_map::{MOST_PANELS, states_in_time};
 use super::last_part::with_last_part;
-use crate::scene::{CellValue, Change, Column, Dimension, Plan, Quantity, SlipEvent};
-use crate::views;
+use super::text::{parameters_of, titled};
+use crate::scene::{CellValue, Change, Column, Described, Plan, Quantity, SlipEvent, Subspace};
 use twinslip_output::RowList;
 use twinslip_output::plot::{Axis, Drawing, Key, Mark, Panel, PlotSeries, Stroke, Symbol};
 
@@ -12,26 +13,34 @@ pub fn event_columns(interfaces: usize) -> Vec<Column<SlipEvent>> {
     use Quantity::{Length, Number, SlipRate, Stress, Time};
     let two = interfaces == 2;
     vec![
-        Column::new("onset", Time, |event: &SlipEvent| event.onset.into()),
+        Column::new("onset", Time, |event: &SlipEvent| event.onset.into())
+            .meaning("time at which the event begins"),
         Column::new("recurrence", Time, |event: &SlipEvent| {
             event.recurrence.into()
-        }),
-        Column::new("duration", Time, |event: &SlipEvent| event.duration.into()),
+        })
+        .meaning("time since the onset of the event before"),
+        Column::new("duration", Time, |event: &SlipEvent| event.duration.into())
+            .meaning("time from the beginning of the event to its end"),
         Column::new("stress_drop", Stress, |event: &SlipEvent| {
             event.stress_drop.into()
-        }),
+        })
+        .meaning("stress at the beginning of the event minus that at its end"),
         Column::new("peak_slip_rate", SlipRate, |event: &SlipEvent| {
             event.peak_slip_rate.into()
-        }),
-        Column::new("slip_1", Length, |event: &SlipEvent| event.slip[0].into()),
+        })
+        .meaning("largest slip rate of all interfaces together"),
+        Column::new("slip_1", Length, |event: &SlipEvent| event.slip[0].into())
+            .meaning("slip of interface i in the event"),
         Column::new("slip_2", Length, move |event: &SlipEvent| {
             two.then_some(event.slip[1]).into()
         })
+        .meaning("slip of interface i in the event")
         .in_table_if(two),
         Column::new("leader", Number, move |event: &SlipEvent| {
             let leader = event.leader().filter(|_| two);
             leader.map_or(CellValue::Word(None), CellValue::Count)
         })
+        .meaning("interface that slips farthest in the event")
         .in_table_if(two),
     ]
 }
@@ -39,6 +48,9 @@ pub fn event_columns(interfaces: usize) -> Vec<Column<SlipEvent>> {
 /// A run in time, and its phase plane beside it; below it where the last part of a long run is beside it.
 pub fn picture_of_run(plan: &Plan, rows: &RowList) -> Drawing {
     let column = |name: &str| rows.column(name).unwrap_or_default();
+    if !plan.system.slides() {
+        return picture_of_states(plan, rows);
+    }
     with_last_part(
         panels_in_time(plan, rows),
         vec![vec![phase_plane(plan, rows)]],
@@ -46,9 +58,43 @@ pub fn picture_of_run(plan: &Plan, rows: &RowList) -> Drawing {
     )
 }
 
+/// The states in time, each in a panel or, of many, all in one, and beside them the first two against each other.
+fn picture_of_states(plan: &Plan, rows: &RowList) -> Drawing {
+    let column = |name: &str| rows.column(name).unwrap_or_default();
+    let states = plan.system.states();
+    let in_time = states.iter().enumerate().map(|(i, name)| Panel {
+        series: vec![PlotSeries::new("", column("time"), column(name))],
+        ..Panel::new(
+            match i {
+                0 => parameters_of(&plan.system),
+                _ => String::new(),
+            },
+            Axis::linear("time t"),
+            Axis::linear(name.to_string()),
+        )
+    });
+    let in_time = match states.len() > MOST_PANELS {
+        true => vec![states_in_time(&plan.system, rows)],
+        false => in_time.collect(),
+    };
+    let plane = match &states[..] {
+        [first, second, ..] => vec![vec![Panel {
+            series: vec![PlotSeries::new("", column(first), column(second))],
+            ..Panel::new(
+                "phase plane",
+                Axis::linear(first.to_string()),
+                Axis::linear(second.to_string()),
+            )
+        }]],
+        _ => Vec::new(),
+    };
+    let first = states.first().map_or(Vec::new(), |name| column(name));
+    with_last_part(in_time, plane, (&column("time"), &first))
+}
+
 /// Stress, states and slip rates against time, from points in the columns [`crate::scene::Plan::pictured`].
 pub fn panels_in_time(plan: &Plan, rows: &RowList) -> Vec<Panel> {
-    let units = &plan.system.units;
+    let units = plan.system.units();
     let time = Axis::linear(axis_label("time t", Quantity::Time, units));
     let column = |name: &str| column(plan, rows, name);
     let of_each = |name: &str, field: &str| {
@@ -60,10 +106,12 @@ pub fn panels_in_time(plan: &Plan, rows: &RowList) -> Vec<Panel> {
         series,
         ..Panel::new(title, time.clone(), y)
     };
-    let parameters = match plan.program {
-        Some(_) => value("K", Quantity::Stiffness, plan.loading.stiffness, units),
-        None => views::parameters(plan.loading.driving, plan.loading.stiffness, units),
-    };
+    let mut parameters = plan.system.parameters();
+    if plan.program.is_some() {
+        // V_H, which changes, is the first of them.
+        parameters.remove(0);
+    }
+    let parameters = titled(plan.system.name(), &parameters, units);
     let mut rates = of_each("v", "slip_rate");
     rates.extend(rows.column("driving").map(|driving| {
         let time = rows.column("time").unwrap_or_default();
@@ -101,9 +149,9 @@ fn meaning_of_changes(plan: &Plan) -> Vec<Key> {
         1..=NAMED => "V_H from there on",
         _ => "V_H changes",
     };
-    let label = match plan.system.units.si() {
+    let label = match plan.system.units().si() {
         true => label.to_owned(),
-        false => axis_label(label, Quantity::SlipRate, &plan.system.units),
+        false => axis_label(label, Quantity::SlipRate, plan.system.units()),
     };
     vec![Key {
         symbol: Symbol::Dot,
@@ -120,7 +168,7 @@ fn changes(plan: &Plan, rows: &RowList) -> Vec<Mark> {
     };
     let (time, stress) = (rows.column("time"), rows.column("stress"));
     let (time, stress) = (time.unwrap_or_default(), stress.unwrap_or_default());
-    let (named, units) = (program.changes.len() <= NAMED, &plan.system.units);
+    let (named, units) = (program.changes.len() <= NAMED, plan.system.units());
     let mark = |change: &Change| {
         // The picture has a point at the ends of all stretches, and none beyond where the run has come to.
         let at = time.iter().position(|&t| t >= change.time)?;
@@ -167,14 +215,18 @@ fn column(plan: &Plan, rows: &RowList, name: &str) -> Vec<f64> {
 }
 
 fn stress_axis(plan: &Plan) -> Axis {
-    Axis::linear(axis_label("stress τ", Quantity::Stress, &plan.system.units))
+    Axis::linear(axis_label(
+        "stress τ",
+        Quantity::Stress,
+        plan.system.units(),
+    ))
 }
 
 fn rate_axis(plan: &Plan) -> Axis {
     Axis::log(axis_label(
         "slip rate v",
         Quantity::SlipRate,
-        &plan.system.units,
+        plan.system.units(),
     ))
 }
 
@@ -201,10 +253,10 @@ fn each(
         let rates = rows.column(name).unwrap_or_default();
         rates.into_iter().fold(f64::NEG_INFINITY, f64::max)
     };
-    match plan.dimension {
-        Dimension::Single => vec![one(1, "")],
-        Dimension::Symmetric => vec![one(1, "₁ = ₂")],
-        Dimension::Full => {
+    match (plan.subspace, plan.system.clusters().len()) {
+        (_, 1) => vec![one(1, "")],
+        (Subspace::Symmetric, _) => vec![one(1, "₁ = ₂")],
+        (Subspace::Whole, 2) => {
             let (fast, slow) = if most("slip_rate_1") >= most("slip_rate_2") {
                 ((1, "₁"), (2, "₂"))
             } else {
@@ -220,8 +272,12 @@ fn each(
                 named(slow, "slow").colour(SLOW).stroke(Stroke::Dashed),
             ]
         }
+        (Subspace::Whole, count) => (1..=count).map(|i| one(i, SUBSCRIPTS[i])).collect(),
     }
 }
+
+/// Of the interfaces or clusters, counted from 1.
+const SUBSCRIPTS: [&str; 10] = ["₀", "₁", "₂", "₃", "₄", "₅", "₆", "₇", "₈", "₉"];
 
 /// `v₁ = v₂` from `v` and `₁ = ₂`.
 fn label(name: &str, marks: &str) -> String {

@@ -1,10 +1,10 @@
 //! Events on the dense output of a step: knots, and zeros in the brackets between them.
 
-use super::super::slip::{Slips, at, slips};
+use super::super::slip::{Slips, slips};
 use super::{Detector, Moment, sign};
 use twinslip::error::Result;
-use twinslip::integrate::Step;
-use twinslip::model::Driven;
+use twinslip::field::Vector;
+use twinslip::integrate::{AnyField, AnyStep};
 use twinslip::number::{DoubleDouble, bracketed_root};
 
 /// Parts of a step. Between two knots the sign of the slope shows whether an extremum lies there, so an excursion is missed
@@ -22,18 +22,32 @@ struct Knot {
 
 /// A step as it is seen from the slips at its beginning.
 #[derive(Clone, Copy)]
-struct Seen<'a, 's, const N: usize> {
-    field: &'a dyn Driven<N>,
-    step: &'a Step<'s, N>,
-    before: &'a Slips,
+struct Seen<'a, 's> {
+    field: &'a AnyField<'a>,
+    step: &'a AnyStep<'s>,
+    before: &'a [DoubleDouble],
+}
+
+impl Seen<'_, '_> {
+    /// The dense output, and exactly the step's own states at its ends.
+    fn at(&self, t: f64) -> Vector {
+        let step = self.step;
+        if t == step.t1 {
+            Vector::from_column_slice(step.y1)
+        } else if t == step.t0 {
+            Vector::from_column_slice(step.y0)
+        } else {
+            step.dense(t)
+        }
+    }
 }
 
 impl Detector {
-    pub(super) fn see_dense<const N: usize>(
+    pub(super) fn see_dense(
         &mut self,
-        field: &dyn Driven<N>,
-        step: &Step<'_, N>,
-        before: &Slips,
+        field: &AnyField<'_>,
+        step: &AnyStep<'_>,
+        before: &[DoubleDouble],
     ) -> Result<()> {
         let seen = Seen {
             field,
@@ -62,12 +76,7 @@ impl Detector {
     }
 
     /// Where the excess turns and, where V_H is not constant, the total slip rate and what it exceeds the threshold by.
-    fn turnings_between<const N: usize>(
-        &self,
-        seen: &Seen<'_, '_, N>,
-        left: Knot,
-        right: Knot,
-    ) -> Vec<Knot> {
+    fn turnings_between(&self, seen: &Seen<'_, '_>, left: Knot, right: Knot) -> Vec<Knot> {
         let rate = self.rate();
         let all = [0.0, rate, (1.0 - self.threshold) * rate];
         let offsets = if rate == 0.0 { &all[..1] } else { &all };
@@ -85,12 +94,7 @@ impl Detector {
     }
 
     /// A part in which the excess is monotonic.
-    fn between<const N: usize>(
-        &mut self,
-        seen: &Seen<'_, '_, N>,
-        left: Knot,
-        right: Knot,
-    ) -> Result<()> {
+    fn between(&mut self, seen: &Seen<'_, '_>, left: Knot, right: Knot) -> Result<()> {
         // At 0 the next knot decides.
         let carried = self.zeros.sign;
         let reached = sign(right.excess).unwrap_or(carried);
@@ -110,20 +114,17 @@ impl Detector {
         Ok(())
     }
 
-    fn moment<const N: usize>(&self, seen: &Seen<'_, '_, N>, t: f64) -> Moment {
-        Moment {
-            time: DoubleDouble::from(t),
-            stress: at(seen.step, t)[0],
-            slips: slips(seen.field, seen.step, seen.before, t),
-        }
+    fn moment(&self, seen: &Seen<'_, '_>, t: f64) -> Moment {
+        let mut there = Slips::new();
+        slips(&self.rates, seen.step, seen.before, t, &mut there);
+        Moment::new(DoubleDouble::from(t), seen.at(t)[0], &there)
     }
 
     // dtau/dt = K (V_H - v_1 - v_2) and its derivative J f hold the excess and its slope, for every system.
-    fn knot<const N: usize>(&self, seen: &Seen<'_, '_, N>, time: f64) -> Knot {
-        let (field, y) = (seen.field, at(seen.step, time));
+    fn knot(&self, seen: &Seen<'_, '_>, time: f64) -> Knot {
+        let (field, y) = (seen.field, seen.at(time));
         let curvature = (field.jacobian(&y) * field.f(&y))[0];
-        let v = field.slip_rates(&y);
-        let total = v[..self.interfaces].iter().sum::<f64>();
+        let total = self.rates.total(y.as_slice());
         let driving = self.driving_at(time);
         Knot {
             time,
@@ -134,12 +135,7 @@ impl Detector {
     }
 
     /// Where the sign changes that `right` no longer has: at the left knot, if that lost it at the joint of two steps.
-    fn crossing<const N: usize>(
-        &self,
-        seen: &Seen<'_, '_, N>,
-        left: Knot,
-        right: Knot,
-    ) -> Result<f64> {
+    fn crossing(&self, seen: &Seen<'_, '_>, left: Knot, right: Knot) -> Result<f64> {
         if sign(left.excess) == sign(right.excess) {
             return Ok(left.time);
         }

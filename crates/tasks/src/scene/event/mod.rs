@@ -8,13 +8,11 @@
 mod dense;
 mod series;
 
-use super::plan::Plan;
+use super::any_system::AnySystem;
 use super::program::Stretch;
-use super::slip::Slips;
+use super::slip::SlipRates;
 use twinslip::error::Result;
-use twinslip::field::State;
-use twinslip::integrate::Step;
-use twinslip::model::Driven;
+use twinslip::integrate::{AnyField, AnyStep};
 use twinslip::number::DoubleDouble;
 use twinslip::number::polynomial::Root;
 use twinslip::series::Zeros;
@@ -32,7 +30,7 @@ pub struct SlipEvent {
     pub stress_drop: f64,
     /// Largest total slip rate v_1 + v_2.
     pub peak_slip_rate: f64,
-    /// Slip of each interface within the event.
+    /// Slip of each interface within the event; a single one stands in both places.
     pub slip: [f64; 2],
 }
 
@@ -56,7 +54,17 @@ impl SlipEvent {
 struct Moment {
     time: DoubleDouble,
     stress: f64,
-    slips: Slips,
+    slips: [DoubleDouble; 2],
+}
+
+impl Moment {
+    fn new(time: DoubleDouble, stress: f64, slips: &[DoubleDouble]) -> Self {
+        Moment {
+            time,
+            stress,
+            slips: [slips[0], slips[slips.len() - 1]],
+        }
+    }
 }
 
 /// The events of a run, from the stress maxima and minima as they come.
@@ -118,7 +126,7 @@ impl Log {
 
 /// Watches the steps of a run for events.
 pub(super) struct Detector {
-    interfaces: usize,
+    rates: SlipRates,
     stiffness: f64,
     /// Over V_H.
     threshold: f64,
@@ -131,10 +139,10 @@ pub(super) struct Detector {
 }
 
 impl Detector {
-    pub fn new(plan: &Plan, threshold: f64) -> Self {
+    pub fn new(system: &AnySystem, rates: &SlipRates, threshold: f64) -> Self {
         Detector {
-            interfaces: plan.system.interfaces,
-            stiffness: plan.loading.stiffness,
+            rates: rates.clone(),
+            stiffness: system.stiffness(),
             threshold,
             stretch: None,
             zeros: Zeros::default(),
@@ -148,18 +156,11 @@ impl Detector {
     }
 
     /// A stretch begins, at this state and these slips: where V_H jumps, an event may begin or end there.
-    pub fn begin<const N: usize>(
-        &mut self,
-        stretch: &Stretch,
-        field: &dyn Driven<N>,
-        y: &State<N>,
-        slips: &Slips,
-    ) {
+    pub fn begin(&mut self, stretch: &Stretch, y: &[f64], slips: &[DoubleDouble]) {
         /// Excursions that are less faster than V_H, relative to it, are steady sliding but for the errors of the run: where V_H falls
         /// after one the event begins.
         const STEADY: f64 = 1e-6;
-        let v = field.slip_rates(y);
-        let total: f64 = v[..self.interfaces].iter().sum();
+        let total = self.rates.total(y);
         let reached = sign(total - stretch.driving.0);
         let Some(before) = self.stretch.replace(*stretch) else {
             self.zeros.sign = reached.unwrap_or(0.0);
@@ -172,11 +173,7 @@ impl Detector {
         if was == stretch.driving.0 {
             return;
         }
-        let here = Moment {
-            time: DoubleDouble::from(stretch.span.0),
-            stress: y[0],
-            slips: *slips,
-        };
+        let here = Moment::new(DoubleDouble::from(stretch.span.0), y[0], slips);
         let steady = |open: &Open| open.peak <= was * (1.0 + STEADY);
         if self.log.open.as_ref().is_some_and(steady) {
             self.log.open = None;
@@ -201,11 +198,11 @@ impl Detector {
     }
 
     /// Looks at one step, from the slips at its beginning.
-    pub fn see<const N: usize>(
+    pub fn see(
         &mut self,
-        field: &dyn Driven<N>,
-        step: &Step<'_, N>,
-        before: &Slips,
+        field: &AnyField<'_>,
+        step: &AnyStep<'_>,
+        before: &[DoubleDouble],
     ) -> Result<()> {
         match step.series() {
             Some(series) => {

@@ -1,32 +1,36 @@
 //! Events on the series of a step: stress maxima and minima, and the peaks between, are roots of polynomials.
 
-use super::super::slip::{Slips, sum};
+use super::super::slip::Slips;
 use super::{Detector, Log, Moment};
+use twinslip::integrate::StepSeries;
+use twinslip::number::DoubleDouble;
 use twinslip::number::polynomial::{Crossing, Root, evaluate, roots};
-use twinslip::series::{Expansion, REFERENCE_ORDER};
+use twinslip::series::REFERENCE_ORDER;
 
 impl Detector {
-    pub(super) fn see_series<const N: usize>(&mut self, series: &Expansion<N>, before: &Slips) {
+    pub(super) fn see_series(&mut self, series: &dyn StepSeries, before: &[DoubleDouble]) {
         let mut excess = [0.0; REFERENCE_ORDER];
-        let excess = &mut excess[..series.order];
-        for (j, c) in excess.iter_mut().enumerate() {
-            *c = series.slip_rates[..self.interfaces]
-                .iter()
-                .map(|rates| rates[j])
-                .sum();
+        let excess = &mut excess[..series.order()];
+        for (i, &count) in self.rates.counts().iter().enumerate() {
+            let rates = excess.iter_mut().zip(series.slip_rate(i));
+            match count {
+                1 => rates.for_each(|(c, rate)| *c += rate),
+                count => rates.for_each(|(c, rate)| *c += count as f64 * rate),
+            }
         }
-        let driving = self.driving_at(series.begin.hi());
-        let rate = self.rate() * series.unit;
+        let (begin, unit) = (series.begin(), series.unit());
+        let driving = self.driving_at(begin.hi());
+        let rate = self.rate() * unit;
         excess[0] -= driving;
         excess[1] -= rate;
-        let length = series.length / series.unit;
+        let length = series.length() / unit;
+        // Stress is a variable of the series itself.
+        let stress = series.variable(0);
         let moment = |s: f64| {
-            let time = s * series.unit;
-            Moment {
-                time: series.begin + time,
-                stress: series.state(time)[0],
-                slips: sum(before, series.slips(time)),
-            }
+            let time = s * unit;
+            let each = before.iter().enumerate();
+            let slips = each.map(|(i, slip)| *slip + series.slip(i, time));
+            Moment::new(begin + time, evaluate(stress, s), &slips.collect::<Slips>())
         };
 
         let extrema = self.zeros.follow(excess, length);

@@ -1,6 +1,9 @@
 //! Between the values that the user knows and the variables that are integrated.
 
-use crate::scene::units::{Quantity, Units};
+use crate::scene::any_system::AnySystem;
+use crate::scene::equations::Subspace;
+use crate::scene::system::Described;
+use crate::scene::units::Quantity;
 use twinslip::error::{Error, Result};
 use twinslip::number::Real;
 
@@ -28,13 +31,14 @@ pub(super) enum Given {
 }
 
 impl Chart {
-    pub fn new(variables: usize, slides: bool, doubled: bool, units: &Units) -> Self {
+    pub fn new(system: &AnySystem, subspace: Subspace) -> Self {
         use Quantity::{State, Stress, Time};
+        let doubled = subspace == Subspace::Symmetric;
         Chart {
-            variables,
-            slides,
+            variables: system.states().len() - usize::from(doubled),
+            slides: system.slides(),
             doubled,
-            units: [Time, Stress, State].map(|quantity| units.factor(quantity)),
+            units: [Time, Stress, State].map(|quantity| system.units().factor(quantity)),
         }
     }
 

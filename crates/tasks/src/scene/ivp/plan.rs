@@ -1,22 +1,22 @@
 //! What an initial value problem is of, checked.
 
 use super::chart::Chart;
+use crate::scene::any_system::AnySystem;
+use crate::scene::equations::{Equations, Subspace};
 use crate::scene::options::{ModelOptions, NumericsOptions};
-use crate::scene::plan::{self, Dimension, bounded};
-use crate::scene::system::{Described, System};
-use crate::scene::text::{self, TextModel};
+use crate::scene::system::Described;
 use crate::scene::units::Units;
 use serde_json::{Map, Value};
 use twinslip::error::{Error, Result};
 use twinslip::field::Vector;
 use twinslip::friction::positive;
-use twinslip::integrate::{AnyField, AnyIntegrator, Choice, Tolerances};
-use twinslip::model::{self, Loading};
+use twinslip::integrate::{AnyIntegrator, Choice, Tolerances};
 
 /// An initial value problem, checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct IvpPlan {
-    model: Model,
+    system: AnySystem,
+    subspace: Subspace,
     pub(super) chart: Chart,
     /// The user's.
     pub(super) span: (f64, f64),
@@ -27,15 +27,6 @@ pub struct IvpPlan {
     method: Choice,
     tolerances: Tolerances,
     max_steps: usize,
-}
-
-/// What moves.
-#[derive(Debug, Clone, PartialEq)]
-enum Model {
-    /// One or two interfaces with a law that is built in.
-    Slab(Box<System>, Loading, Dimension),
-    /// Interfaces with a law from a file, or a system from one.
-    Text(Box<TextModel>),
 }
 
 impl IvpPlan {
@@ -54,44 +45,25 @@ impl IvpPlan {
         if let Some(i) = start.iter().position(|x| !x.is_finite()) {
             return Err(Error::parameter(format!("start[{i}]"), start[i], "finite"));
         }
-        let (model, chart, from, numerics) = match TextModel::in_time(model, &[])? {
-            Some(text) => {
-                let slides = text.slab.is_some();
-                let chart = Chart::new(text.system.states().len(), slides, false, text.units());
-                let from = started(&chart, start, &text_names(&text))?;
-                let numerics = (text::numerics(numerics, text.units())?, numerics.max_steps);
-                (Model::Text(Box::new(text)), chart, from, numerics)
-            }
-            None => {
-                let system = System::new(model)?;
-                let loading = system.loading()?;
-                let whole = Chart::new(system.interfaces + 1, true, false, &system.units);
-                let mut from = started(&whole, start, &slab_names(system.interfaces))?;
-                let both = [from[1], from[system.interfaces]];
-                bounded(both, &system)?;
-                let dimension = Dimension::of(&system, &(from[0], both));
-                let variables = dimension.number();
-                from.truncate(variables);
-                let doubled = dimension == Dimension::Symmetric;
-                let chart = Chart::new(variables, true, doubled, &system.units);
-                let numerics = (plan::numerics(numerics, &system.units)?, numerics.max_steps);
-                let model = Model::Slab(Box::new(system), loading, dimension);
-                (model, chart, from, numerics)
-            }
-        };
-        let ((method, tolerances), max_steps) = numerics;
+        let system = AnySystem::in_time(model, None)?;
+        let chart = Chart::new(&system, Subspace::Whole);
+        let from = Vector::from_vec(started(&chart, start, &names(&system))?);
+        system.allowed(&from)?;
+        let (method, tolerances) = system.numerics(numerics)?;
+        let (subspace, from) = system.reduced(from);
+        let chart = Chart::new(&system, subspace);
         let inner_span = (chart.time_inward(span.0), chart.time_inward(span.1));
         if !inner_span.0.is_finite() || !inner_span.1.is_finite() || inner_span.0 == inner_span.1 {
             let must = "of two times that differ and are within doubles without their unit";
             return Err(Error::parameter("span", told(span), must));
         }
-        let from = Vector::from_vec(from);
-        let from = match &model {
-            Model::Text(text) => text.at_time(from, inner_span.0),
-            Model::Slab(..) => from,
+        let from = match system.is_timed() {
+            true => from.push(inner_span.0),
+            false => from,
         };
         let plan = IvpPlan {
-            model,
+            system,
+            subspace,
             chart,
             span,
             start: start.to_vec(),
@@ -99,7 +71,7 @@ impl IvpPlan {
             from,
             method,
             tolerances,
-            max_steps,
+            max_steps: numerics.max_steps,
         };
         // It says what is wrong with the numerics.
         plan.integrator()?;
@@ -113,10 +85,7 @@ impl IvpPlan {
 
     /// What the values are called: `stress`, `state_1`, ..., or the states of a system.
     pub fn names(&self) -> Vec<String> {
-        match &self.model {
-            Model::Slab(system, ..) => slab_names(system.interfaces),
-            Model::Text(text) => text_names(text),
-        }
+        names(&self.system)
     }
 
     /// The span, its beginning first.
@@ -135,18 +104,8 @@ impl IvpPlan {
     }
 
     /// What is integrated.
-    pub(super) fn field(&self) -> Result<AnyField<'_>> {
-        let (system, loading, dimension) = match &self.model {
-            Model::Text(text) => return text.field(),
-            Model::Slab(system, loading, dimension) => (system, *loading, dimension),
-        };
-        let law = system.law;
-        Ok(match (dimension, system.unequal(loading)) {
-            (Dimension::Single, _) => AnyField::new::<2>(model::single_interface(law, loading)),
-            (Dimension::Symmetric, _) => AnyField::new::<2>(model::symmetric(law, loading)),
-            (Dimension::Full, Some(unequal)) => AnyField::new::<3>(Box::new(unequal)),
-            (Dimension::Full, None) => AnyField::new::<3>(model::two_interfaces(law, loading)),
-        })
+    pub(super) fn equations(&self) -> Equations<'_> {
+        self.system.equations(self.subspace)
     }
 
     pub(super) fn integrator(&self) -> Result<AnyIntegrator> {
@@ -167,17 +126,11 @@ impl IvpPlan {
 
 impl Described for IvpPlan {
     fn echo(&self) -> &Map<String, Value> {
-        match &self.model {
-            Model::Slab(system, ..) => system.echo(),
-            Model::Text(text) => text.echo(),
-        }
+        self.system.echo()
     }
 
     fn units(&self) -> &Units {
-        match &self.model {
-            Model::Slab(system, ..) => &system.units,
-            Model::Text(text) => text.units(),
-        }
+        self.system.units()
     }
 }
 
@@ -225,17 +178,12 @@ fn started(chart: &Chart, start: &[f64], names: &[String]) -> Result<Vec<f64>> {
     }
 }
 
-fn slab_names(interfaces: usize) -> Vec<String> {
-    let states = (1..=interfaces).map(|i| format!("state_{i}"));
-    std::iter::once("stress".to_owned()).chain(states).collect()
-}
-
-fn text_names(text: &TextModel) -> Vec<String> {
-    match &text.slab {
-        Some(slab) => slab_names(slab.clusters().len()),
-        None => {
-            let states = text.system.states().iter();
-            states.map(|&name| name.to_owned()).collect()
-        }
-    }
+/// What values are called: psi stands in the place of its logarithm.
+fn names(system: &AnySystem) -> Vec<String> {
+    let states = system.states().into_iter();
+    let name = |name: std::borrow::Cow<'static, str>| match system.slides() {
+        true => name.trim_start_matches("log_").to_owned(),
+        false => name.into_owned(),
+    };
+    states.map(name).collect()
 }

@@ -7,7 +7,7 @@ use super::plan::IvpPlan;
 use super::solution::IvpSolution;
 use crate::scene::system::Described;
 use twinslip::error::{Error, Result};
-use twinslip::integrate::{AnyStep, Control};
+use twinslip::integrate::{AnyStep, Control, MotionUnits};
 
 /// What ends a run on its way.
 enum Ended<E> {
@@ -31,7 +31,8 @@ impl IvpPlan {
         if let Some(times) = asked.times {
             self.check(times)?;
         }
-        let field = self.field()?;
+        let equations = self.equations();
+        let field = equations.field(&MotionUnits::given(equations.variables()))?;
         let mut integrator = self.integrator()?;
         let events = asked.events.len();
         let mut watch = match Watch::new(self, asked) {

@@ -326,16 +326,20 @@ pub fn many_run_columns() -> Vec<Column<ManyInstant>> {
     use Quantity::{Length, Number, SlipRate, State, Stress, Time};
     type Row = ManyInstant;
     vec![
-        Column::new("time", Time, |at: &Row| at.time.into()),
-        Column::new("stress", Stress, |at: &Row| at.stress.into()),
-        Column::new("slip", Length, |at: &Row| at.slip.into()),
-        Column::new("slip_rate", SlipRate, |at: &Row| at.extent.slip_rate.into()),
+        Column::new("time", Time, |at: &Row| at.time.into()).meaning("time"),
+        Column::new("stress", Stress, |at: &Row| at.stress.into()).meaning("shear stress τ"),
+        Column::new("slip", Length, |at: &Row| at.slip.into())
+            .meaning("slip of all interfaces together"),
+        Column::new("slip_rate", SlipRate, |at: &Row| at.extent.slip_rate.into())
+            .meaning("slip rate of all interfaces together"),
         Column::new("slip_rate_max", SlipRate, |at: &Row| {
             at.extent.slip_rate_max.into()
-        }),
-        Column::new("sliding", Number, |at: &Row| at.extent.sliding.into()),
-        Column::new("state_min", State, |at: &Row| at.extent.state[0].into()),
-        Column::new("state_max", State, |at: &Row| at.extent.state[1].into()),
+        })
+        .meaning("largest slip rate"),
+        Column::new("sliding", Number, |at: &Row| at.extent.sliding.into())
+            .meaning("number of interfaces that slide faster than V_H/N"),
+        Column::new("state_min", State, |at: &Row| at.extent.state[0].into()).meaning("least ψ"),
+        Column::new("state_max", State, |at: &Row| at.extent.state[1].into()).meaning("largest ψ"),
     ]
 }
 

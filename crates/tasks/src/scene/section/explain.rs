@@ -1,6 +1,7 @@
 //! A return map's plan in words.
 
-use super::super::plan::{Dimension, longest_in_words};
+use super::super::plan::{dimension_in_words, longest_in_words, tolerance_in_words};
+use super::super::system::Described;
 use super::super::units::Quantity;
 use super::SectionPlan;
 use std::fmt::Write;
@@ -15,44 +16,40 @@ pub fn explain_section(plan: &SectionPlan) -> String {
     let mut line = |subject: &str, words: String| {
         writeln!(text, "  {subject:<18}{words}").expect("writing to a string");
     };
-    let units = &plan.system.units;
+    let units = plan.system.units();
     line(
         "dimension",
-        match plan.dimension {
-            Dimension::Single => "2: one interface, (tau, ln psi)",
-            Dimension::Symmetric => {
-                "2: psi1 = psi2 at the start, so the run stays in the symmetric subspace for ever"
-            }
-            Dimension::Full if plan.system.unequal.is_some() => {
-                "3: the interfaces differ, (tau, ln psi1, ln psi2)"
-            }
-            Dimension::Full => "3: psi1 and psi2 differ, (tau, ln psi1, ln psi2)",
-        }
-        .into(),
+        dimension_in_words(&plan.system, plan.subspace, &plan.start),
     );
     line(
         "method",
         format!("{}: {}", plan.method.name(), plan.method.reason()),
     );
+    if let Some(words) = plan.system.formulas_in_words() {
+        line("formulas", words);
+    }
     line(
         "tolerances",
         format!(
-            "rtol {:e}, atol {:e} on (tau, ln psi), at most {} steps{}",
+            "rtol {:e}, {}, at most {} steps{}",
             plan.tolerances.rtol,
-            plan.tolerances.atol,
+            tolerance_in_words(&plan.system, plan.tolerances.atol, &plan.told_atol()),
             count(plan.max_steps),
-            longest_in_words(plan.tolerances, &plan.system.units)
+            longest_in_words(plan.tolerances, units)
         ),
     );
     line("section", section(plan));
+    let unit = match units.name(Quantity::Time) {
+        "1" => String::new(),
+        unit => format!(" {unit}"),
+    };
     line(
         "returns",
         format!(
-            "{} after {} that are skipped; a run that does not return for {} {} ends",
+            "{} after {} that are skipped; a run that does not return for {}{unit} ends",
             plan.returns,
             plan.skip,
             units.outward(Quantity::Time, plan.patience),
-            units.name(Quantity::Time)
         ),
     );
     line(
@@ -70,7 +67,6 @@ pub fn explain_section(plan: &SectionPlan) -> String {
 }
 
 fn section(plan: &SectionPlan) -> String {
-    let units = &plan.system.units;
     let sense = match plan.direction {
         Crossing::Downwards => "falling",
         Crossing::Upwards | Crossing::Touching => "rising",
@@ -82,9 +78,13 @@ fn section(plan: &SectionPlan) -> String {
         }
         HasSeries::Never => "by root finding on the dense output",
     };
-    let stress = units.outward(Quantity::Stress, plan.stress);
-    let unit = units.name(Quantity::Stress);
-    format!("stress {sense} through {stress} {unit}, {how}")
+    let unit = plan.system.units().name(plan.system.quantity(plan.state));
+    let unit = match unit {
+        "1" => String::new(),
+        unit => format!(" {unit}"),
+    };
+    let (state, value) = (plan.state_name(), plan.outward_value());
+    format!("{state} {sense} through {value}{unit}, {how}")
 }
 
 fn tangents(plan: &SectionPlan) -> &'static str {

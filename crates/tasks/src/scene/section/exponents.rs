@@ -1,7 +1,7 @@
 //! Lyapunov exponents of what a return map has settled on: of a periodic orbit by its multipliers, of anything else by means
 //! along a run.
 
-use super::super::plan::Dimension;
+use super::super::equations::Subspace;
 use super::SectionPlan;
 use twinslip::equilibrium::Symmetry;
 use twinslip::error::Result;
@@ -9,7 +9,7 @@ use twinslip::field::Vector;
 use twinslip::integrate::{AnyField, Choice, Control, MotionUnits};
 use twinslip::number::Uncertain;
 use twinslip::orbit::{
-    FoundOrbit, InitialGuess, InterfaceSystem, Kind, Orbit, OrbitAccuracy, Query, find,
+    FoundOrbit, InitialGuess, InterfaceSystem, Kind, Orbit, OrbitAccuracy, Query, find, find_from,
     find_unequal,
 };
 use twinslip::section::{
@@ -17,7 +17,7 @@ use twinslip::section::{
 };
 
 /// Periods that differ by less, relatively, are of one orbit.
-pub(in crate::scene) const SAME_PERIOD: f64 = 1e-6;
+const SAME_PERIOD: f64 = 1e-6;
 
 /// The Lyapunov exponents of a run, dimensionless, with what checks them.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,11 +49,11 @@ impl CheckedExponents {
 }
 
 /// Told how far it has come; it may stop it.
-pub(in crate::scene) type ProgressObserver<'a> = &'a mut dyn FnMut(f64) -> Control;
+pub(super) type ProgressObserver<'a> = &'a mut dyn FnMut(f64) -> Control;
 
 /// The exponents by means along a record with waypoints, or of the equilibrium that it ends at; `None` of too few returns, and
 /// if it is stopped.
-pub(in crate::scene) fn of_record(
+pub(super) fn of_record(
     field: &AnyField<'_>,
     record: &ReturnRecord,
     see: ProgressObserver<'_>,
@@ -81,41 +81,46 @@ pub(in crate::scene) fn of_record(
     }))
 }
 
-/// ln |mu| / T of the periodic orbit through a point, with its period; `None` where that orbit or one of its multipliers is not
-/// known.
+/// ln |mu| / T of the periodic orbit through a point of this field, with its period; `None` where that orbit or one of its multipliers is
+/// not known.
 pub(super) fn of_orbit(
     plan: &SectionPlan,
+    field: &AnyField<'_>,
     periodic: &Periodic,
+    max_step: f64,
 ) -> Option<(Uncertain, CheckedExponents)> {
-    let y = &periodic.point;
-    let begin = InitialGuess::At {
-        start: (y[0], [y[1], y[y.len() - 1]]),
-        period: Some(periodic.period.value),
-    };
-    let accuracy = OrbitAccuracy::of(Choice::Taylor).stepping(plan.tolerances.max_step);
+    let (y, period) = (&periodic.point, periodic.period.value);
+    let accuracy = OrbitAccuracy::of(Choice::Taylor).stepping(max_step);
     let same = |found: Result<FoundOrbit>| {
         let orbit = found.ok()?.orbit;
-        let apart = orbit.period.value / periodic.period.value - 1.0;
+        let apart = orbit.period.value / period - 1.0;
         (apart.abs() < SAME_PERIOD).then_some(orbit)
     };
+    let Some((system, loading)) = plan.system.closed_forms() else {
+        let orbit = same(find_from(field, y, Some(period), &accuracy))?;
+        return Some((orbit.period, of_multipliers(&orbit)?));
+    };
+    let begin = InitialGuess::At {
+        start: (y[0], [y[1], y[y.len() - 1]]),
+        period: Some(period),
+    };
     let slab = InterfaceSystem {
-        law: plan.system.law,
-        interfaces: plan.system.interfaces,
-        loading: plan.loading,
+        law: system.law,
+        interfaces: system.interfaces,
+        loading,
     };
     let closed = |symmetry| same(find(&slab, &Query { symmetry, begin }, &accuracy));
-    let orbit = match (plan.system.unequal(plan.loading), plan.dimension) {
-        (Some(interfaces), _) => same(find_unequal(&interfaces, begin, &accuracy))?,
+    let alike = plan.subspace == Subspace::Symmetric || system.interfaces == 1;
+    let orbit = match system.unequal(loading) {
+        Some(interfaces) => same(find_unequal(&interfaces, begin, &accuracy))?,
+        None if alike => closed(Symmetry::Symmetric)?,
         // A run in all dimensions may have settled on a symmetric orbit.
-        (None, Dimension::Full) => {
-            closed(Symmetry::Asymmetric).or_else(|| closed(Symmetry::Symmetric))?
-        }
-        (None, _) => closed(Symmetry::Symmetric)?,
+        None => closed(Symmetry::Asymmetric).or_else(|| closed(Symmetry::Symmetric))?,
     };
     Some((orbit.period, of_multipliers(&orbit)?))
 }
 
-pub(in crate::scene) fn of_multipliers(orbit: &Orbit) -> Option<CheckedExponents> {
+fn of_multipliers(orbit: &Orbit) -> Option<CheckedExponents> {
     let Uncertain {
         value: period,
         uncertainty,

@@ -7,40 +7,40 @@ mod run;
 
 pub use explain::explain_section;
 pub use exponents::CheckedExponents;
-pub(super) use exponents::{SAME_PERIOD, of_multipliers, of_record};
 pub use row::{SectionRow, section_columns};
-pub(super) use run::{Means, Settling};
 pub use run::{SectionOutcome, run_section};
 
-use super::options::SectionOptions;
-use super::plan::{Dimension, USUAL_START, numerics, start};
-use super::system::System;
+use super::any_system::AnySystem;
+use super::equations::Subspace;
+use super::options::{SectionOptions, number};
+use super::system::Described;
 use super::units::Quantity;
+use serde_json::Value;
 use twinslip::error::{Error, Result};
+use twinslip::field::Vector;
 use twinslip::friction::positive;
-use twinslip::integrate::{Choice, Tolerances};
-use twinslip::model::Loading;
+use twinslip::integrate::{Choice, MotionUnits, Tolerances};
 use twinslip::number::polynomial::Crossing;
-use twinslip::section::{FEWEST_FOR_EXPONENTS, usual_patience};
+use twinslip::section::{FEWEST_FOR_EXPONENTS, Surface};
 
 /// The section of the paper.
-pub(super) const USUAL_SURFACE: &str = "stress=auto";
+const USUAL_SURFACE: &str = "stress=auto";
 /// More returns than this are a slip of the pen.
 const MOST_RETURNS: usize = 100_000_000;
 
 /// A return map, checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SectionPlan {
-    /// What slides.
-    pub system: System,
-    /// V_H and K.
-    pub loading: Loading,
-    /// tau and ln psi_1, ln psi_2 at the start.
-    pub start: (f64, [f64; 2]),
-    /// What is integrated.
-    pub dimension: Dimension,
-    /// The stress of the section.
-    pub stress: f64,
+    /// What moves.
+    pub system: AnySystem,
+    /// The states among which it stays.
+    pub subspace: Subspace,
+    /// The values of these states at the start.
+    pub start: Vector,
+    /// The place of the state that has a fixed value in the section.
+    pub state: usize,
+    /// That value.
+    pub value: f64,
     /// The direction in which it is crossed.
     pub direction: Crossing,
     /// Returns that are let pass.
@@ -57,6 +57,10 @@ pub struct SectionPlan {
     pub method: Choice,
     /// The tolerances.
     pub tolerances: Tolerances,
+    /// Whether the absolute one is the user's, in the system's own units.
+    atol_is_given: bool,
+    /// The units in which the run is made and its regime is decided.
+    units: MotionUnits,
     /// The bound on steps.
     pub max_steps: usize,
 }
@@ -67,30 +71,34 @@ impl SectionPlan {
     /// # Errors
     /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
     pub fn new(options: &SectionOptions) -> Result<Self> {
-        let system = System::new(&options.model)?;
-        let loading = system.loading()?;
-        let text = options.start.as_deref().unwrap_or(USUAL_START);
-        let start = start(text, &system, &loading)?;
-        let (method, tolerances) = numerics(&options.numerics, &system.units)?;
+        let system = AnySystem::new(&options.model)?;
+        if system.states().len() < 2 {
+            return Err(Error::Input(
+                "a system of one state has no return map: it never comes back".into(),
+            ));
+        }
+        let start = system.start(options.start.as_deref())?;
+        let (method, tolerances) = system.numerics(&options.numerics)?;
+        counted(options)?;
+        let (state, value) = surface(options.surface.as_deref(), &system)?;
+        let mut units = system.units_of_run(&start)?;
+        // No logarithm is that of a value of another sign.
+        if units.signs[state] * value <= 0.0 {
+            units.signs[state] = 0.0;
+        }
         let patience = match options.patience {
             Some(patience) => {
                 let patience = positive("patience", patience)?;
-                system.units.inward(Quantity::Time, patience)
+                system.units().inward(Quantity::Time, patience)
             }
-            None => usual_patience(loading.driving, loading.stiffness),
+            None => system.patience(&units),
         };
-        counted(options)?;
-        if options.numerics.max_steps == 0 {
-            return Err(Error::parameter("max-steps", 0, "at least 1"));
-        }
+        let (subspace, start) = system.reduced(start);
         Ok(SectionPlan {
-            stress: stress(
-                options.surface.as_deref().unwrap_or(USUAL_SURFACE),
-                &system,
-                &loading,
-            )?,
-            dimension: Dimension::of(&system, &start),
+            subspace,
             start,
+            state,
+            value,
             direction: if options.upwards {
                 Crossing::Upwards
             } else {
@@ -103,15 +111,52 @@ impl SectionPlan {
             asked_method: options.numerics.method.clone(),
             method,
             tolerances,
+            atol_is_given: options.numerics.atol.is_some(),
+            units,
             max_steps: options.numerics.max_steps,
-            loading,
             system,
         })
+    }
+
+    /// The absolute tolerance as it is told.
+    pub fn told_atol(&self) -> Value {
+        let atol = self.tolerances.atol;
+        self.system
+            .absolute_tolerance(&self.units, atol, self.atol_is_given)
+    }
+
+    /// The value of the state in the section, in the user's units.
+    pub fn outward_value(&self) -> f64 {
+        let quantity = self.system.quantity(self.state);
+        self.system.units().outward(quantity, self.value)
+    }
+
+    /// The name of the state that has this value.
+    pub fn state_name(&self) -> String {
+        self.system.states()[self.state].to_string()
+    }
+
+    /// The section in the units of the run.
+    fn surface(&self, units: &MotionUnits) -> Surface {
+        // In the subspace one variable stands for both states.
+        let place = self.state.min(self.start.len() - 1);
+        let direction = units.direction(place);
+        let mut normal = Vector::zeros(self.start.len());
+        normal[place] = direction;
+        let chart = self.system.series_variables();
+        let mut value = normal.clone();
+        value[place] = units.inward_value(place, self.value);
+        Surface {
+            offset: direction * chart.variables(value.as_slice())[place],
+            normal,
+            direction: self.direction,
+            chart,
+        }
     }
 }
 
 /// That the numbers of returns are allowed.
-pub(super) fn counted(options: &SectionOptions) -> Result<()> {
+fn counted(options: &SectionOptions) -> Result<()> {
     if !(1..=MOST_RETURNS).contains(&options.returns) {
         return Err(Error::parameter(
             "returns",
@@ -132,19 +177,34 @@ pub(super) fn counted(options: &SectionOptions) -> Result<()> {
     Ok(())
 }
 
-/// The stress of the section.
-fn stress(text: &str, system: &System, loading: &Loading) -> Result<f64> {
-    let unreadable = || {
-        Error::Input(format!(
-            "`surface` {text:?} must be stress=auto or stress=VALUE"
-        ))
+/// STATE=VALUE, and of interfaces stress=auto.
+fn surface(text: Option<&str>, system: &AnySystem) -> Result<(usize, f64)> {
+    let names = || system.states().join(", ");
+    if text.is_none_or(|text| text == USUAL_SURFACE)
+        && let Some(stress) = system.mean_stress()?
+    {
+        return Ok((0, stress));
+    }
+    let Some(text) = text else {
+        return Err(Error::Input(format!(
+            "`surface` STATE=VALUE is missing: where is the section? The states are {}",
+            names()
+        )));
     };
-    let value = text.strip_prefix("stress=").ok_or_else(unreadable)?;
-    if value == "auto" {
-        return Ok(system.steady_stress(loading.driving));
-    }
-    match value.trim().parse::<f64>() {
-        Ok(x) if x.is_finite() => Ok(system.units.inward(Quantity::Stress, x)),
-        _ => Err(unreadable()),
-    }
+    let read = text.split_once('=');
+    let read = read.and_then(|(name, value)| Some((name, number(value).ok()?)));
+    let Some((name, value)) = read else {
+        let auto = if system.slides() {
+            "stress=auto or "
+        } else {
+            ""
+        };
+        return Err(Error::Input(format!(
+            "`surface` {text:?} must be {auto}STATE=VALUE, where the states are {}",
+            names()
+        )));
+    };
+    let state = system.state("the state of `surface`", name.trim())?;
+    let value = system.units().inward(system.quantity(state), value);
+    Ok((state, value))
 }

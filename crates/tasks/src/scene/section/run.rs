@@ -1,18 +1,20 @@
 //! From the plan of a return map to its rows and its verdict.
 
-use super::super::plan::Dimension;
+use super::super::equations::Subspace;
 use super::super::run::Sink;
+use super::super::system::Described;
+use super::super::units::Quantity;
 use super::SectionPlan;
 use super::exponents::{CheckedExponents, ProgressObserver, embedded, of_orbit, of_record};
 use super::row::RowMaker;
-use twinslip::error::{Error, Result};
+use twinslip::error::{Error, MessageUnits, Result};
 use twinslip::field::Vector;
 use twinslip::integrate::{AnyField, AnyIntegrator, Control, MotionUnits, Work};
-use twinslip::model;
 use twinslip::number::Uncertain;
 use twinslip::section::{
     Ended, Exponents, FEWEST_FOR_EXPONENTS, FEWEST_RETURNS, Periodic, Regime, RegimeVerdict,
-    Return, ReturnRecord, Surface, Watching, aperiodic, record, record_finely, verdict,
+    Return, ReturnRecord, SeriesVariables, Surface, Watching, aperiodic, record, record_finely,
+    verdict,
 };
 
 /// Where exponents are asked for, the run takes this part of the time, and has come to this part when their own run is done.
@@ -49,7 +51,7 @@ pub struct SectionOutcome {
 
 impl SectionOutcome {
     /// The same in a system's own units of time and of the state of the section.
-    pub(in crate::scene) fn outward(self, units: &MotionUnits, state: usize) -> Self {
+    fn outward(self, units: &MotionUnits, state: usize) -> Self {
         SectionOutcome {
             period: self.period.map(|period| units.outward_time(period)),
             lyapunov: self.lyapunov.map(|found| found.outward(units)),
@@ -60,7 +62,7 @@ impl SectionOutcome {
 }
 
 /// The exponents by means along a record.
-pub(in crate::scene) type Means<'a> =
+type Means<'a> =
     &'a dyn Fn(&ReturnRecord, ProgressObserver<'_>) -> Result<Option<CheckedExponents>>;
 
 /// Runs the plan of a return map. A row is complete, and given to the sink, when the next return is known.
@@ -68,48 +70,98 @@ pub(in crate::scene) type Means<'a> =
 /// # Errors
 /// [`Error::Parameter`] if the integrator refuses its settings; a failure on the way is in [`SectionOutcome::failure`].
 pub fn run_section(plan: &SectionPlan, sink: &mut dyn Sink) -> Result<SectionOutcome> {
-    let (law, loading) = (plan.system.law, plan.loading);
-    let whole = || match plan.system.unequal(loading) {
-        Some(field) => AnyField::new::<3>(Box::new(field)),
-        None => AnyField::new::<3>(model::two_interfaces(law, loading)),
-    };
-    let field = &match plan.dimension {
-        Dimension::Single => AnyField::new::<2>(model::single_interface(law, loading)),
-        Dimension::Symmetric => AnyField::new::<2>(model::symmetric(law, loading)),
-        Dimension::Full => whole(),
-    };
-    let (tau, [first, second]) = plan.start;
-    let start = Vector::from_column_slice(&[tau, first, second][..field.dimension()]);
-    let means: Means<'_> = &|record, see| match plan.dimension {
+    let mut rows = RowMaker::new(plan);
+    let mut outcome = run_in(plan, &plan.units, &mut rows, sink)?;
+    if matches!(outcome.failure, Some(Error::Underflow { .. }))
+        && let Some(units) = plan.system.units_below_doubles(&plan.units, &plan.start)
+        && units.signs[plan.state] * plan.value >= 0.0
+    {
+        rows.restart();
+        outcome = run_in(plan, &units, &mut rows, sink)?;
+    }
+    if !outcome.stopped {
+        rows.end(sink);
+    }
+    outcome.failure = outcome.failure.map(|error| told(plan, error));
+    Ok(outcome)
+}
+
+/// The error in the user's units.
+fn told(plan: &SectionPlan, mut error: Error) -> Error {
+    let units = plan.system.units();
+    let quantity = plan.system.quantity(plan.state);
+    if quantity != Quantity::LogState {
+        return units.told(error);
+    }
+    // In the variables of the series psi stands for its logarithm.
+    let is_psi = plan.system.series_variables() == SeriesVariables::LogStates;
+    if let Error::NoReturn {
+        section,
+        lowest,
+        highest,
+        ..
+    } = &mut error
+    {
+        for x in [section, lowest, highest] {
+            *x = units.outward(quantity, if is_psi { x.ln() } else { *x });
+        }
+    }
+    if !units.si() || !matches!(error, Error::NoReturn { .. }) {
+        return units.told(error);
+    }
+    let none = (1.0, "");
+    error.in_units(&MessageUnits {
+        time: (units.factor(Quantity::Time), units.name(Quantity::Time)),
+        stress: none,
+        slip_rate: none,
+        stiffness: none,
+    })
+}
+
+/// The run in these units.
+fn run_in(
+    plan: &SectionPlan,
+    units: &MotionUnits,
+    rows: &mut RowMaker<'_>,
+    sink: &mut dyn Sink,
+) -> Result<SectionOutcome> {
+    let equations = plan.system.equations(plan.subspace);
+    let field = &equations.field(units)?;
+    let tolerances = units.inward_tolerances(plan.tolerances, plan.atol_is_given);
+    let means: Means<'_> = &|record, see| match plan.subspace {
         // The third exponent is that of the perturbations across the subspace.
-        Dimension::Symmetric => of_record(&whole(), &embedded(record), see),
-        Dimension::Single | Dimension::Full => of_record(field, record, see),
+        Subspace::Symmetric => {
+            let whole = plan.system.equations(Subspace::Whole);
+            let units = MotionUnits::given(whole.variables());
+            of_record(&whole.field(&units)?, &embedded(record), see)
+        }
+        Subspace::Whole => of_record(field, record, see),
     };
     let settling = Settling {
         field,
-        start,
-        surface: Surface::stress(field.dimension(), plan.stress, plan.direction),
+        start: units.inward(&plan.start),
+        surface: plan.surface(units),
         watching: Watching {
             skip: plan.skip,
             // One more, for the last row's next.
             returns: plan.returns + 1,
-            patience: plan.patience,
-            accuracy: plan.tolerances.rtol,
-            max_step: plan.tolerances.max_step,
+            patience: plan.patience / units.time,
+            accuracy: tolerances.rtol,
+            max_step: tolerances.max_step,
             waypoints: false,
         },
-        integrator: AnyIntegrator::new(plan.method, plan.tolerances, plan.max_steps)?,
+        integrator: AnyIntegrator::new(plan.method, tolerances, plan.max_steps)?,
         max_steps: plan.max_steps,
         lyapunov: plan.lyapunov,
         means,
-        by_orbit: &|periodic| of_orbit(plan, periodic),
+        by_orbit: &|periodic| of_orbit(plan, field, periodic, tolerances.max_step),
     };
-    let mut rows = RowMaker::new(plan);
-    let outcome = settling.run(&mut |at, sink| rows.next(at, sink), sink)?;
-    if outcome.failure.is_none() && outcome.returns == plan.returns {
-        rows.end(sink);
-    }
-    Ok(outcome)
+    let see = &mut |at: &Return, sink: &mut dyn Sink| {
+        let state = units.outward(&at.state);
+        rows.next(at.time * units.time, state.as_slice(), sink)
+    };
+    let outcome = settling.run(see, sink)?;
+    Ok(outcome.outward(units, plan.state))
 }
 
 /// Whether all returns that were asked for are there, and only the one more that rows and verdicts would have used did not come.
@@ -119,24 +171,24 @@ fn has_all(record: &ReturnRecord, returns: usize) -> bool {
 }
 
 /// What a run settles on, of any field.
-pub(in crate::scene) struct Settling<'a> {
-    pub field: &'a AnyField<'a>,
-    pub start: Vector,
-    pub surface: Surface,
-    pub watching: Watching,
-    pub integrator: AnyIntegrator,
-    pub max_steps: usize,
+struct Settling<'a> {
+    field: &'a AnyField<'a>,
+    start: Vector,
+    surface: Surface,
+    watching: Watching,
+    integrator: AnyIntegrator,
+    max_steps: usize,
     /// Whether the exponents are asked for.
-    pub lyapunov: bool,
+    lyapunov: bool,
     /// Exponents by means along a record.
-    pub means: Means<'a>,
+    means: Means<'a>,
     /// Exponents by the orbit through a periodic point, with its period.
-    pub by_orbit: &'a dyn Fn(&Periodic) -> Option<(Uncertain, CheckedExponents)>,
+    by_orbit: &'a dyn Fn(&Periodic) -> Option<(Uncertain, CheckedExponents)>,
 }
 
 impl Settling<'_> {
     /// Runs it; every return that is recorded goes to `row`.
-    pub fn run(
+    fn run(
         mut self,
         row: &mut dyn FnMut(&Return, &mut dyn Sink) -> Control,
         sink: &mut dyn Sink,

@@ -2,119 +2,52 @@
 
 use super::friction::{Friction, Steady};
 use super::model::TextModel;
-use super::slab::TextSlab;
-use crate::scene::law::{LawCurve, LawLandmarks, LawPoint, Together, of_each, slip_rates};
-use crate::scene::options::LawOptions;
-use crate::scene::system::Described;
+use crate::scene::law::{LawCurve, LawLandmarks, LawPoint};
 use twinslip::error::{Error, Result};
 use twinslip::friction::{Extremum, ExtremumKind, StiffnessMaximum};
 use twinslip::number::{Interval, Jet, Real, Uncertain, bracketed_root, enclosing_radius};
 
-/// A friction law from a file that is asked for, checked.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TextLawPlan {
-    /// Whose law it is.
-    pub model: TextModel,
-    /// Where it is evaluated, ascending, in V*.
-    pub slip_rates: Vec<f64>,
-    /// What interfaces do that slide together at V_H, where it is given.
-    pub together: Option<Together>,
-}
+/// The law at a slip rate, with tau_ss and ln psi_ss there.
+type At = (Steady, LawPoint);
 
-/// The law at a slip rate.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TextLawPoint {
-    /// tau_ss and ln psi_ss.
-    pub steady: Steady,
-    /// tau_ss with its error budget, infinite where that is not known.
-    pub stress: Uncertain,
-    /// psi_ss, likewise.
-    pub state: Uncertain,
-    /// What a law that is built in has there.
-    pub point: LawPoint,
-}
-
-impl TextLawPlan {
-    /// Checks the options for this law.
-    ///
-    /// # Errors
-    /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
-    pub fn new(options: &LawOptions, model: TextModel) -> Result<Self> {
-        Ok(TextLawPlan {
-            slip_rates: slip_rates(options, model.units())?,
-            together: Together::of(&options.model, model.units())?,
-            model,
-        })
-    }
-
-    /// The plan, one subject a line.
-    pub fn explain(&self) -> String {
-        format!(
-            "plan of this command\n  zeros of both formulas at {} slip rates{}, enclosed by interval arithmetic; extrema where slopes change sign between these; no integration",
-            self.slip_rates.len(),
-            of_each(self.slab().differ(&self.model.system))
-        )
-    }
-
-    fn slab(&self) -> &TextSlab {
-        let slab: Option<&TextSlab> = self.model.slab.as_ref();
-        slab.expect("a law from a file")
-    }
-
-    /// The law of both interfaces, where they differ of each, up to a rate at which one has no steady state, and why that is.
-    ///
-    /// # Errors
-    /// [`Error::NotConverged`] where a law has no steady state between two points that have.
-    pub fn curves(&self) -> Result<(Vec<LawCurve<TextLawPoint>>, Option<Error>)> {
-        let count = if self.slab().differ(&self.model.system) {
-            2
-        } else {
-            1
-        };
-        let mut curves = Vec::with_capacity(count);
-        for i in 0..count {
-            let friction = self.slab().friction(&self.model.system, i);
-            let (points, failure) = self.points(&friction, i + 1);
-            let together = self
-                .together
-                .and_then(|all| all.slip_rate)
-                .map(|rate| point(&friction, i + 1, rate));
-            curves.push(LawCurve {
-                interface: i + 1,
-                together: together.transpose()?,
-                landmarks: landmarks(&friction, &points)?,
-                points,
-                coefficient: friction.parameter("direct_effect"),
-            });
-            if failure.is_some() {
-                return Ok((curves, failure));
+/// The law of an interface at these rates up to one at which it has no steady state, and why that is; and at V_H/N.
+///
+/// # Errors
+/// [`Error::NotConverged`] where the law has no steady state between two points that have.
+pub(in crate::scene) fn curve_of_formulas(
+    model: &TextModel,
+    place: usize,
+    (rates, together): (&[f64], Option<f64>),
+) -> Result<(LawCurve, Option<Error>)> {
+    let (slab, interface) = (model.slab.as_ref().expect("a law from a file"), place + 1);
+    let friction = slab.friction(&model.system, place);
+    let mut points = Vec::with_capacity(rates.len());
+    let mut failure = None;
+    for &v in rates {
+        match point(&friction, interface, v) {
+            Ok(point) => points.push(point),
+            Err(error) => {
+                failure = Some(error);
+                break;
             }
         }
-        Ok((curves, None))
     }
-
-    /// The law at all slip rates, up to one at which it has no steady state, and why that is.
-    fn points(
-        &self,
-        friction: &Friction<'_>,
-        interface: usize,
-    ) -> (Vec<TextLawPoint>, Option<Error>) {
-        let mut points = Vec::with_capacity(self.slip_rates.len());
-        for &v in &self.slip_rates {
-            match point(friction, interface, v) {
-                Ok(point) => points.push(point),
-                Err(error) => return (points, Some(error)),
-            }
-        }
-        (points, None)
-    }
+    let together = together.map(|v| point(&friction, interface, v));
+    let curve = LawCurve {
+        interface,
+        together: together.transpose()?.map(|(_, point)| point),
+        landmarks: landmarks(&friction, &points)?,
+        points: points.into_iter().map(|(_, point)| point).collect(),
+        coefficient: friction.parameter("direct_effect"),
+    };
+    Ok((curve, failure))
 }
 
 /// The extrema of the steady stress, and the largest critical stiffness, between the points.
-fn landmarks(friction: &Friction<'_>, points: &[TextLawPoint]) -> Result<LawLandmarks> {
+fn landmarks(friction: &Friction<'_>, points: &[At]) -> Result<LawLandmarks> {
     let slopes: Vec<Slopes> = points
         .iter()
-        .map(|at| slopes_at(friction, at.point.slip_rate, at.steady))
+        .map(|(steady, at)| slopes_at(friction, at.slip_rate, *steady))
         .collect();
     let mut extrema = Vec::new();
     for (pair, ends) in slopes.windows(2).zip(points.windows(2)) {
@@ -149,28 +82,22 @@ fn landmarks(friction: &Friction<'_>, points: &[TextLawPoint]) -> Result<LawLand
     })
 }
 
-fn point(friction: &Friction<'_>, interface: usize, v: f64) -> Result<TextLawPoint> {
+fn point(friction: &Friction<'_>, interface: usize, v: f64) -> Result<At> {
     let steady = friction.steady(v)?;
     let [stress, log_state] = friction.enclosed(Interval::constant(v), steady);
     let psi = steady.log_state.exp();
-    let (critical, _) = friction.steady_slopes(v, steady.stress, psi);
+    let (critical_stiffness, _) = friction.steady_slopes(v, steady.stress, psi);
     let rounding = f64::EPSILON * psi;
-    let state = Uncertain::new(psi, psi * log_state.uncertainty.exp_m1() + rounding);
-    Ok(TextLawPoint {
-        steady,
+    let coefficient = friction.parameter("direct_effect");
+    let point = LawPoint {
+        interface,
+        slip_rate: v,
         stress,
-        state,
-        point: LawPoint {
-            interface,
-            slip_rate: v,
-            stress: steady.stress,
-            friction: friction
-                .parameter("direct_effect")
-                .map(|a| a * steady.stress),
-            state: psi,
-            critical_stiffness: critical,
-        },
-    })
+        friction: coefficient.map(|a| a * steady.stress),
+        state: Uncertain::new(psi, psi * log_state.uncertainty.exp_m1() + rounding),
+        critical_stiffness,
+    };
+    Ok((steady, point))
 }
 
 /// k_c, and what has the sign of d tau_ss/dV, with their derivatives in V.
@@ -199,10 +126,10 @@ fn slopes_within(friction: &Friction<'_>, v: Interval) -> Option<Slopes<Interval
 /// Where a quantity is zero between two points, on either side of which it has opposite signs.
 fn zero_of(
     friction: &Friction<'_>,
-    ends: &[TextLawPoint],
+    ends: &[At],
     of: impl Fn(Slopes) -> Jet<f64, 1>,
 ) -> Result<f64> {
-    let [low, high] = [0, 1].map(|i| ends[i].point.slip_rate.ln());
+    let [low, high] = [0, 1].map(|i| ends[i].1.slip_rate.ln());
     let root = bracketed_root("an extremum of the law", low, high, |x| {
         let v = x.exp();
         let quantity = friction.steady(v).map_or(
@@ -231,7 +158,7 @@ fn enclosure(
 /// The largest maximum of k_c between the points, where it has any.
 fn largest_stiffness(
     friction: &Friction<'_>,
-    points: &[TextLawPoint],
+    points: &[At],
     slopes: &[Slopes],
 ) -> Result<Option<StiffnessMaximum>> {
     let mut largest: Option<StiffnessMaximum> = None;
@@ -263,7 +190,7 @@ fn largest_stiffness(
     Ok(largest.filter(|known| known.stiffness.value > 0.0))
 }
 
-fn maximum_of_stiffness(friction: &Friction<'_>, ends: &[TextLawPoint]) -> Result<f64> {
+fn maximum_of_stiffness(friction: &Friction<'_>, ends: &[At]) -> Result<f64> {
     // By halves: the slope of the derivative is not known.
     zero_of(friction, ends, |slopes| Jet {
         value: slopes.critical.gradient[0],

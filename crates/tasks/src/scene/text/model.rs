@@ -1,11 +1,12 @@
 //! A user-defined system with what the command line says about it.
 
 use super::file::{SystemFile, TIME, TimeUse};
-use super::law_file::{DRIVING, LawFile};
+use super::law_file::{DRIVING, LawFile, STIFFNESS};
 use super::options::TextOptions;
 use super::slab::TextSlab;
 use crate::scene::file::read_bounded;
 use crate::scene::options::ModelOptions;
+use crate::scene::program::{Program, Stretch};
 use crate::scene::set::assignments;
 use crate::scene::shipped::{shipped_law, shipped_system, shipped_system_names};
 use crate::scene::system::Described;
@@ -137,30 +138,66 @@ impl TextModel {
         }
     }
 
-    /// Gives interfaces another V_H, which may be 0.
-    pub(super) fn drive(&mut self, driving: f64) -> Result<()> {
-        let name = self.system.parameter_names()[DRIVING];
-        self.system.set(name, driving)
+    /// V_H of interfaces; 0 where nothing is driven.
+    pub(in crate::scene) fn driving(&self) -> f64 {
+        self.of_interfaces(DRIVING).unwrap_or(0.0)
     }
 
-    /// V_H of interfaces; 0 where nothing is driven.
-    pub(super) fn driving(&self) -> f64 {
-        let of_slab = self
-            .slab
-            .as_ref()
-            .map(|_| self.system.parameters()[DRIVING]);
-        of_slab.unwrap_or(0.0)
+    /// K of interfaces; 0 where there are none.
+    pub(in crate::scene) fn stiffness(&self) -> f64 {
+        self.of_interfaces(STIFFNESS).unwrap_or(0.0)
+    }
+
+    fn of_interfaces(&self, place: usize) -> Option<f64> {
+        let slab = self.slab.as_ref();
+        slab.map(|_| self.system.parameters()[place])
+    }
+
+    /// Takes the changes of V_H, of which the first may say which it is before.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a system without V_H, and where V_H at the start is missing.
+    pub(in crate::scene) fn programmed(&mut self, program: &Program) -> Result<()> {
+        let Some(slab) = &self.slab else {
+            return Err(Error::Input(
+                "`program` changes the driving velocity of interfaces; a user-defined `system` has none".into(),
+            ));
+        };
+        let Some(first) = slab.driving.or(program.first()) else {
+            return Err(Error::Input(
+                "`driving` V_H is missing: which velocity is it before the first change of `program`?"
+                    .into(),
+            ));
+        };
+        self.system
+            .set(self.system.parameter_names()[DRIVING], first)?;
+        self.echo.insert("driving".into(), json!(first + 0.0));
+        self.echo.insert("program".into(), json!(program.told()));
+        Ok(())
+    }
+
+    /// The equations of a stretch of a run: on a ramp V_H is their last state.
+    ///
+    /// # Errors
+    /// Those of the formulas.
+    pub(in crate::scene) fn on(&self, stretch: &Stretch) -> Result<Cow<'_, TextSystem>> {
+        let (rate, driving) = (stretch.rate(), stretch.driving.0);
+        let slab = self.slab.as_ref();
+        let Some(slab) = slab.filter(|_| rate != 0.0 || driving != self.driving()) else {
+            return Ok(Cow::Borrowed(&self.system));
+        };
+        if rate != 0.0 {
+            return slab.on_ramp(&self.system, rate).map(Cow::Owned);
+        }
+        let mut system = self.system.clone();
+        system.set(system.parameter_names()[DRIVING], driving)?;
+        Ok(Cow::Owned(system))
     }
 
     /// What it is called.
     pub fn name(&self) -> &str {
         let of = |key: &str| self.echo.get(key).and_then(Value::as_str);
         of("system").or(of("law")).unwrap_or_default()
-    }
-
-    /// Puts down something more that a result is of.
-    pub(super) fn tell(&mut self, name: &str, value: Value) {
-        self.echo.insert(name.to_owned(), value);
     }
 
     /// Tells that a parameter varies: it has no one value.

@@ -149,7 +149,7 @@ impl TextSlab {
     }
 
     /// Whether the interfaces differ in any parameter of the law.
-    pub(super) fn differ(&self, system: &TextSystem) -> bool {
+    pub(in crate::scene) fn differ(&self, system: &TextSystem) -> bool {
         let own = |places: &Vec<usize>| -> Vec<f64> {
             places.iter().map(|&i| system.parameters()[i]).collect()
         };
