@@ -118,7 +118,7 @@ impl<'b, 'a> OrbitBranches<'b, 'a> {
             }
             if system.has(Symmetry::Asymmetric) && self.branch.symmetry != Some(Symmetry::Symmetric)
             {
-                self.from_pitchforks(teller)?;
+                self.along_parting(teller)?;
             }
         }
         if let Some(found) = self.branch.found.filter(|_| self.count == 0)
@@ -126,7 +126,7 @@ impl<'b, 'a> OrbitBranches<'b, 'a> {
         {
             self.along_found(found, teller)?;
         }
-        self.from_doublings(teller)
+        self.along_doubled(teller)
     }
 
     fn settings(&self) -> PalcSettings {
@@ -184,7 +184,7 @@ impl<'b, 'a> OrbitBranches<'b, 'a> {
         let system = self.branch.system;
         let symmetry = symmetry_of(&site.shooting);
         let chart = Chart::of(&system, symmetry);
-        let site = chart.from_any(&site);
+        let site = chart.own(&site);
         let mut corrector = new_corrector(chart.family())?;
         let held = [Condition::Parameter(FREE, site.at[FREE])];
         let orbit = corrector.correct(site, &[FREE], &held, Goal::STEP)?;
@@ -304,7 +304,7 @@ impl<'b, 'a> OrbitBranches<'b, 'a> {
     }
 
     /// The asymmetric branches from the pitchforks that none has come to.
-    fn from_pitchforks(&mut self, teller: &mut Teller<'_>) -> Result<()> {
+    fn along_parting(&mut self, teller: &mut Teller<'_>) -> Result<()> {
         for i in 0..self.pitchforks.len() {
             let here = self.pitchforks[i].site.at[FREE];
             if teller.told.is_break() || self.merged.iter().any(|at| (at - here).abs() < SAME) {
@@ -319,7 +319,7 @@ impl<'b, 'a> OrbitBranches<'b, 'a> {
     }
 
     /// The branches of doubled orbits. The list grows as it is gone through.
-    fn from_doublings(&mut self, teller: &mut Teller<'_>) -> Result<()> {
+    fn along_doubled(&mut self, teller: &mut Teller<'_>) -> Result<()> {
         let mut i = 0;
         while i < self.doublings.len() && teller.told.is_continue() {
             let one = &mut self.doublings[i];

@@ -188,7 +188,7 @@ impl<'a> Chart<'a> {
     }
 
     /// An orbit of its symmetry, in the variables of all states or in those of states in which both parts move alike, in its own.
-    pub fn from_any(&self, site: &ContinuationPoint) -> ContinuationPoint {
+    pub fn own(&self, site: &ContinuationPoint) -> ContinuationPoint {
         match self.variables {
             Variables::Alike => middle(site),
             _ => site.clone(),

@@ -97,7 +97,7 @@ pub fn normal_form(
 }
 
 /// The same of a form that such orbits have.
-pub(super) fn classified(
+fn classified(
     family: &dyn ParametrisedField,
     site: &ContinuationPoint,
     form: Form,

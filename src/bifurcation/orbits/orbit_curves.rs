@@ -157,7 +157,7 @@ impl<'a> OrbitCurves<'_, 'a> {
         let there = self.known.iter().filter(|(there, _)| *there == place);
         let all = there.flat_map(|(_, seeds)| seeds);
         let own = all.filter(|(own, _)| symmetry.is_none_or(|wanted| wanted == *own));
-        Ok(own.map(|(_, site)| kind.chart.from_any(site)).collect())
+        Ok(own.map(|(_, site)| kind.chart.own(site)).collect())
     }
 
     /// The bifurcations along a coordinate at a value of the other one.
