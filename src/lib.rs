@@ -66,8 +66,6 @@ pub mod fit;
 pub mod internals {
     pub use twinslip_model::internals::*;
 
-    pub use crate::bifurcation::equilibria::hopf::certain_zero;
-    pub use crate::bifurcation::equilibria::hopf_special::by_both;
     pub use crate::integrate::rosenbrock::control::{MayErr, error_norm, first_step};
     pub use crate::integrate::rosenbrock::factors::Factors;
     pub use crate::integrate::singularity::time_to_singularity;

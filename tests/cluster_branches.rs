@@ -2,12 +2,12 @@
 
 use crate::cluster_equilibria::{eigenvalues, jacobian};
 use crate::command::{csv, folder, object, refused, twinslip};
-use crate::common::heard::{Heard, slab, spinodal, two};
+use crate::common::heard::{Heard, slab, spinodal};
 use crate::common::{assert_close, number};
 use std::ops::ControlFlow::Continue;
-use twinslip::bifurcation::clusters::{ClusterRow, branch, locus};
+use twinslip::bifurcation::equilibria::{EquilibriumOfRow, branch, locus};
 use twinslip::bifurcation::{
-    BranchRequest, Event, Label, LocusKind, LocusRequest, Parameter, Special, equilibria,
+    BranchRequest, BranchRow, Event, Label, LocusKind, LocusRequest, Parameter, Special,
 };
 use twinslip::equilibrium::{
     Equilibrium, Symmetry, Verdict, cluster_stability, cluster_steady_states,
@@ -17,11 +17,11 @@ use twinslip::friction::{AnyLaw, Parameters};
 const RANGE: (f64, f64) = (1e-3, 1e6);
 
 /// Rows and special points, in their order.
-fn told(request: &BranchRequest) -> (Vec<ClusterRow>, Vec<Special>) {
+fn told(request: &BranchRequest) -> (Vec<BranchRow>, Vec<Special>) {
     let (mut rows, mut special) = (Vec::new(), Vec::new());
     branch(request, &mut |event| {
         match event {
-            Event::Cluster(row) => rows.push(row),
+            Event::Branch(row) => rows.push(row),
             Event::Special(one) => special.push(one),
             other => panic!("nothing else is told of: {other:?}"),
         }
@@ -36,47 +36,48 @@ fn along_driving(law: AnyLaw, interfaces: usize, stiffness: f64) -> BranchReques
     BranchRequest::new(slab, Parameter::Driving, RANGE)
 }
 
-/// The bifurcations, by V_H.
-fn bifurcations(special: &[Special]) -> Vec<&Special> {
-    let of_one_parameter = |one: &&Special| Label::BIFURCATIONS.contains(&one.label);
-    let mut all: Vec<_> = special.iter().filter(of_one_parameter).collect();
-    all.sort_by(|a, b| a.driving.value.total_cmp(&b.driving.value));
+fn of(row: &BranchRow) -> &EquilibriumOfRow {
+    row.equilibrium.as_ref().expect("an equilibrium")
+}
+
+/// The special points of a command with this label: V_H with its uncertainty, ascending.
+fn points(command: &str, label: &str) -> Vec<[f64; 2]> {
+    let made = object(command);
+    let special = made["result"]["special"]
+        .as_array()
+        .expect("points")
+        .clone();
+    let these = special.iter().filter(|one| one["label"] == label);
+    let known = |one: &serde_json::Value| {
+        let driving = &one["driving"];
+        [number(&driving["value"]), number(&driving["uncertainty"])]
+    };
+    let mut all: Vec<[f64; 2]> = these.map(known).collect();
+    all.sort_by(|a, b| a[0].total_cmp(&b[0]));
     all
 }
 
+/// The law from a file is the same one, and its equilibria are followed step by step by their equations.
 #[test]
-fn two_interfaces_have_the_same_bifurcations_either_way() {
-    for stiffness in [0.02, 0.14, 0.45] {
-        let known = Heard::of_all(|seen| {
-            let request = BranchRequest::new(two(1.0, stiffness), Parameter::Driving, RANGE);
-            equilibria::branch(&request, seen)
-        });
-        let (_, made) = told(&along_driving(spinodal(), 2, stiffness));
-        let (known, made) = (bifurcations(&known.special), bifurcations(&made));
-        assert!(known.len() >= 3, "{known:?}");
-        assert_eq!(known.len(), made.len(), "K = {stiffness}");
-        for (a, b) in known.into_iter().zip(made) {
-            let what = format!("K = {stiffness}: {a:?} {b:?}");
-            assert_eq!(a.label, b.label, "{what}");
-            assert_eq!(a.symmetry, b.symmetry, "{what}");
-            assert_close(b.driving.value, a.driving.value, 1e-13, &what);
-            let apart = (a.driving.value - b.driving.value).abs();
-            assert!(
-                apart <= a.driving.uncertainty + b.driving.uncertainty,
-                "{what}"
-            );
-            assert!(b.driving.uncertainty < 1e-12 * b.driving.value, "{what}");
-            if let Label::Hb = a.label {
-                let [p, q] = [a, b].map(|one| one.period.expect("a period"));
-                assert_close(q.value, p.value, 1e-12, &what);
-                assert!(
-                    (p.value - q.value).abs() <= p.uncertainty + q.uncertainty,
-                    "{what}"
-                );
-                assert_eq!(a.criticality, b.criticality, "{what}");
-                let [p, q] = [a, b].map(|one| one.coefficient.expect("l_1"));
-                assert_close(q, p, 1e-10, &what);
-            }
+fn two_interfaces_have_the_bifurcations_of_their_equations() {
+    for (command, label, count) in [
+        (
+            "branch equilibria --stiffness 0.14 --from 0.06 --to 300",
+            "HB",
+            4,
+        ),
+        (
+            "branch equilibria --stiffness 0.02 --from 0.06 --to 300",
+            "HB",
+            0,
+        ),
+        ("locus hopf", "EP", 4),
+    ] {
+        let made = points(command, label);
+        let known = points(&format!("{command} --law scenes/laws/spinodal.toml"), label);
+        assert_eq!((made.len(), known.len()), (count, count), "{command}");
+        for ([a, p], [b, q]) in made.into_iter().zip(known) {
+            assert!((a - b).abs() <= p + q, "{command}: {a} ± {p}, {b} ± {q}");
         }
     }
 }
@@ -98,7 +99,7 @@ fn landings_are_all_states(law: AnyLaw, interfaces: usize, at: &[f64]) -> usize 
     let mut seen = 0;
     for &driving in at {
         let what = format!("{}, N = {interfaces}, V_H = {driving}", law.name());
-        let landed = |row: &&ClusterRow| row.label == Some(Label::Uz) && row.driving == driving;
+        let landed = |row: &&BranchRow| row.label == Some(Label::Uz) && row.driving == driving;
         let mut these: Vec<_> = rows.iter().filter(landed).collect();
         these.sort_by(|a, b| b.stress.total_cmp(&a.stress));
         let known = cluster_steady_states(&law, driving, interfaces).expect("solved");
@@ -107,16 +108,21 @@ fn landings_are_all_states(law: AnyLaw, interfaces: usize, at: &[f64]) -> usize 
         for (row, state) in these.into_iter().zip(&known.equilibria) {
             let what = format!("{what}: {row:?}");
             assert_close(row.stress, state.stress.value, 1e-12, &what);
-            let counts: Vec<usize> = row.clusters.iter().map(|one| one.count).collect();
+            let counts: Vec<usize> = of(row).clusters.iter().map(|one| one.count).collect();
             assert_eq!(counts, state.counts, "{what}");
-            let present: Vec<usize> = row.share.into_iter().filter(|&n| n > 0).collect();
+            let share = of(row).share.expect("a share");
+            let present: Vec<usize> = share.into_iter().filter(|&n| n > 0).collect();
             assert_eq!(counts, present, "{what}");
-            for (i, one) in row.clusters.iter().enumerate() {
+            for (i, one) in of(row).clusters.iter().enumerate() {
                 assert_close(one.slip_rate, state.slip_rate[i], 1e-12, &what);
                 assert_close(one.state, state.state()[i], 1e-12, &what);
             }
             let known = cluster_stability(&law, state, stiffness).expect("K is valid");
-            assert_eq!(row.unstable, known.unstable(), "{what}");
+            assert_eq!(of(row).unstable, known.unstable(), "{what}");
+            for (a, b) in of(row).eigenvalues.iter().zip(&known.eigenvalues) {
+                let apart = (a.value - b.value).norm();
+                assert!(apart <= a.uncertainty + b.uncertainty, "{what}");
+            }
             assert_eq!(row.verdict, known.verdict, "{what}");
             seen += 1;
         }
@@ -134,7 +140,7 @@ fn landings_are_all_steady_states() {
 }
 
 /// The steady state that a row is of.
-fn state_of(law: &AnyLaw, interfaces: usize, row: &ClusterRow) -> Equilibrium {
+fn state_of(law: &AnyLaw, interfaces: usize, row: &BranchRow) -> Equilibrium {
     let found = cluster_steady_states(law, row.driving, interfaces).expect("solved");
     let off = |one: &Equilibrium| (one.stress.value - row.stress).abs();
     let nearest = { found.equilibria.into_iter() }.min_by(|a, b| off(a).total_cmp(&off(b)));
@@ -192,7 +198,7 @@ fn two_states_are_born_or_die_at_folds() {
             counts.sort_unstable();
             counts
         };
-        let counts = sorted(row.clusters.iter().map(|one| one.count).collect());
+        let counts = sorted(of(row).clusters.iter().map(|one| one.count).collect());
         let near = |factor: f64| {
             let found = cluster_steady_states(&spinodal(), row.driving * factor, interfaces);
             let found = found.expect("solved");
@@ -233,11 +239,11 @@ fn stability_changes_at_bifurcations_alone() {
                 let [a, b] = [&branch[pair[0]], &branch[pair[1]]];
                 if between.is_empty() {
                     let what = format!("{} {stiffness}: {a:?} {b:?}", law.name());
-                    assert_eq!(a.unstable, b.unstable, "{what}");
+                    assert_eq!(of(a).unstable, of(b).unstable, "{what}");
                     assert_eq!(a.verdict, b.verdict, "{what}");
                 }
                 if let [only] = between {
-                    let change = a.unstable.abs_diff(b.unstable);
+                    let change = of(a).unstable.abs_diff(of(b).unstable);
                     let fits = match only.label {
                         Some(Label::Hb) => change == 2,
                         Some(Label::Lp) => change == 1,
@@ -258,8 +264,8 @@ fn stability_changes_at_bifurcations_alone() {
 fn stairs_are_stable() {
     let (rows, _) = told(&along_driving(spinodal(), 5, 0.14));
     let stable = rows.iter().filter(|row| row.verdict == Verdict::Stable);
-    let apart = stable.filter(|row| row.symmetry() == Symmetry::Asymmetric);
-    let mut stairs: Vec<[usize; 3]> = apart.map(|row| row.share).collect();
+    let apart = stable.filter(|row| row.symmetry == Symmetry::Asymmetric);
+    let mut stairs: Vec<[usize; 3]> = apart.filter_map(|row| of(row).share).collect();
     stairs.sort_unstable();
     stairs.dedup();
     let known = [[1, 0, 4], [2, 0, 3], [3, 0, 2], [4, 0, 1], [4, 1, 0]];
@@ -372,30 +378,6 @@ fn on_curves(special: &[Special], label: Label) -> Vec<&Special> {
     let mut these: Vec<_> = special.iter().filter(|one| one.label == label).collect();
     these.sort_by(|a, b| a.driving.value.total_cmp(&b.driving.value));
     these
-}
-
-#[test]
-fn curves_of_two_interfaces_are_the_same_either_way() {
-    for kind in [LocusKind::Hopf, LocusKind::Pitchfork, LocusKind::SaddleNode] {
-        let request = LocusRequest {
-            at_stiffness: vec![0.05, 0.14],
-            ..LocusRequest::new(two(1.0, 1.0), kind, RANGE, (1e-3, 1.0))
-        };
-        let known = Heard::of_all(|seen| equilibria::locus(&request, seen));
-        let made = Heard::of_all(|seen| locus(&request, seen));
-        for label in [Label::Uz, Label::Top] {
-            let [known, made] = [&known, &made].map(|heard| on_curves(&heard.special, label));
-            assert_eq!(known.len(), made.len(), "{kind:?} {label:?}");
-            for (a, b) in known.into_iter().zip(made) {
-                let what = format!("{kind:?}: {a:?} {b:?}");
-                for (a, b) in [(a.driving, b.driving), (a.stiffness, b.stiffness)] {
-                    assert_close(b.value, a.value, 1e-12, &what);
-                    let apart = (a.value - b.value).abs();
-                    assert!(apart <= a.uncertainty + b.uncertainty, "{what}");
-                }
-            }
-        }
-    }
 }
 
 #[test]

@@ -388,6 +388,20 @@ const BRANCH: [&str; 16] = [
     "symmetry",
 ];
 
+/// Of equilibria.
+const GROWTH: [&str; 10] = [
+    "eigenvalue_1_re",
+    "eigenvalue_1_im",
+    "eigenvalue_uncertainty_1",
+    "eigenvalue_2_re",
+    "eigenvalue_2_im",
+    "eigenvalue_uncertainty_2",
+    "eigenvalue_3_re",
+    "eigenvalue_3_im",
+    "eigenvalue_uncertainty_3",
+    "unstable",
+];
+
 #[test]
 fn branch() {
     let arguments = "branch equilibria --stiffness 0.14";
@@ -398,12 +412,13 @@ fn branch() {
     assert_eq!(made["numerics"]["along"], "driving");
     assert_eq!(made["numerics"]["tolerance"], 1e-11);
     let rows = made["result"]["rows"].as_array().expect("a list");
-    assert_eq!(fields(&rows[0]), BRANCH);
+    assert_eq!(fields(&rows[0]), [&BRANCH[..], &GROWTH].concat());
     assert!(rows.iter().all(|row| row["period"].is_null()));
     assert!(rows.iter().all(|row| row["branch"].is_u64()));
     let table = csv(&twinslip(&format!("{arguments} --format csv")).out);
     assert_eq!(table[0][..16], BRANCH);
-    assert_eq!(table[0][16..], ["row_check"]);
+    assert_eq!(table[0][16..26], GROWTH);
+    assert_eq!(table[0][26..], ["row_check"]);
     assert_eq!(table.len() - 1, rows.len());
     for (line, row) in table[1..].iter().zip(rows) {
         assert_eq!(line[0].parse::<f64>().unwrap(), number(row, "/driving"));

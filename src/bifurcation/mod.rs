@@ -2,7 +2,6 @@
 //!
 //! Everything found is handed on as soon as it is known, as an [`Event`]: what was computed before an interruption is not lost.
 
-pub mod clusters;
 pub mod equilibria;
 pub mod general;
 pub mod orbits;
@@ -266,16 +265,18 @@ pub struct BranchRow {
     pub stress_range: (f64, f64),
     /// The period of an orbit.
     pub period: Option<f64>,
-    /// psi of both interfaces: of an equilibrium, or where the orbit's stress is largest.
+    /// psi of both interfaces, of more of the slowest and the fastest one: of an equilibrium, or where the orbit's stress is largest.
     pub state: [f64; 2],
     /// The slip rates there.
     pub slip_rate: [f64; 2],
-    /// ln |mu| of both nontrivial multipliers, the larger one first; `None` for equilibria without stiffness.
+    /// ln |mu| of both nontrivial multipliers of an orbit, the larger one first.
     pub ln_abs_multiplier: [Option<f64>; 2],
     /// Stability.
     pub verdict: Verdict,
     /// What is special here.
     pub label: Option<Label>,
+    /// Of an equilibrium, what there is beside.
+    pub equilibrium: Option<equilibria::EquilibriumOfRow>,
 }
 
 /// A point of a curve in the (V_H, K) plane.
@@ -323,8 +324,6 @@ impl LocusRow {
 pub enum Event {
     /// A point of a branch.
     Branch(BranchRow),
-    /// A point of a branch of equilibria of many interfaces.
-    Cluster(clusters::ClusterRow),
     /// A point of a curve.
     Locus(LocusRow),
     /// A special point.

@@ -46,6 +46,13 @@ pub struct Stability {
     pub verdict: Verdict,
 }
 
+impl Stability {
+    /// How many eigenvalues have a positive real part, as they are.
+    pub fn unstable(&self) -> usize {
+        self.eigenvalues.iter().filter(|z| z.re > 0.0).count()
+    }
+}
+
 /// Eigenvalues and verdict of an equilibrium at stiffness K.
 ///
 /// # Errors

@@ -18,7 +18,7 @@ const GRADING: i32 = 40;
 const PARTS: i32 = 24;
 
 /// Q(s), the difference quotient of the logarithm of the steady activation at the two rates s and V_H - s.
-pub(crate) fn quotient<T: Real>(law: &impl Law, driving: f64, s: T) -> T {
+pub(super) fn quotient<T: Real>(law: &impl Law, driving: f64, s: T) -> T {
     let fast = T::constant(driving) - s;
     let gap = T::constant(driving) - s * 2.0;
     steady_log_activation(law, Difference::new(fast, s, gap)).gap / gap

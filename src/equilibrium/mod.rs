@@ -31,7 +31,6 @@ pub use clusters::{
 pub use eigenvalues::{Stability, Verdict, eigenvalues, stability};
 pub use interface::LawOfEach;
 pub(crate) use interface::{Interface, routh_hurwitz};
-pub(crate) use isolate::quotient;
 pub use lyapunov_ball::LyapunovBall;
 pub use pitchfork::Pitchfork;
 pub(crate) use refine::refined;
@@ -105,6 +104,8 @@ pub struct Equilibrium {
     pub(crate) rate_bounds: Vec<Interval>,
     /// The true slower rate lies within this distance.
     pub(crate) radius: f64,
+    /// The part of the distances of the true rates by which they move together; zero where no such part is known.
+    pub(crate) together: Vec<f64>,
     /// The true psi and ln psi lie within these distances.
     state_uncertainty: Vec<[f64; 2]>,
 }
@@ -262,6 +263,7 @@ impl Equilibrium {
                 .iter()
                 .map(|rate| rate.1)
                 .fold(f64::INFINITY, f64::min),
+            together: vec![0.0; rates.len()],
             state_uncertainty: states.iter().map(|(_, both)| *both).collect(),
         }
     }

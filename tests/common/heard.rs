@@ -46,7 +46,6 @@ impl Heard {
             Event::Branch(row) => self.rows.push(row),
             Event::Locus(row) => self.points.push(row),
             Event::Special(special) => self.special.push(special),
-            other => panic!("nothing else is told of: {other:?}"),
         }
         Continue(())
     }

@@ -4,7 +4,6 @@ use super::call::Call;
 use super::slab::SlabCurves;
 use super::{Ending, general};
 use twinslip::bifurcation::BranchRow;
-use twinslip::bifurcation::clusters::ClusterRow;
 use twinslip::error::Result;
 use twinslip_tasks::scene::{BranchKind, BranchOptions, BranchPlan, TextModel, TextSubject};
 use twinslip_tasks::views;
@@ -41,16 +40,12 @@ pub fn run(options: &BranchOptions, call: &Call) -> Result<Ending> {
         call,
     };
     let (along, slab) = (&plan.along, &plan.request.slab);
-    if plan.system.interfaces > 2 {
-        return branches.follow(
-            views::cluster_columns(),
-            |known, seen| plan.follow(known, seen),
-            |rows: &[ClusterRow], _| views::staircase(rows, along, slab, &plan.system),
-        );
-    }
     branches.follow(
         views::branch_columns(plan.of == BranchKind::Orbits, plan.system.interfaces),
         |known, seen| plan.follow(known, seen),
-        |rows: &[BranchRow], special| views::branches(rows, special, along, slab, &plan.system),
+        |rows: &[BranchRow], special| match plan.system.interfaces > 2 {
+            true => views::staircase(rows, along, slab, &plan.system),
+            false => views::branches(rows, special, along, slab, &plan.system),
+        },
     )
 }

@@ -6,7 +6,7 @@ use super::words::several;
 use super::{Ending, many_equilibria, text};
 use nalgebra::Complex;
 use serde_json::{Value, json};
-use twinslip::equilibrium::{ClusterEigenvalue, EigenvalueKind};
+use twinslip::equilibrium::{ClusterEigenvalue, ClusterStability, EigenvalueKind};
 use twinslip::error::Result;
 use twinslip_output::Format;
 use twinslip_tasks::scene::{
@@ -84,11 +84,14 @@ fn object(found: &ClassifiedEquilibrium, system: &System) -> Value {
         values.iter().map(|&x| units.outward(quantity, x)).collect()
     };
     let pair = |z: &Complex<f64>| [z.re, z.im].map(|x| units.outward(Quantity::Growth, x));
-    // As many as there are, null where one is beyond the range of doubles
-    let count = system.interfaces + 1;
-    let [eigenvalues, eigenvalue_uncertainty] = match (found.of_each(), found.of_clusters()) {
-        (None, None) => [Value::Null, Value::Null],
-        (_, Some(all)) => {
+    let radius = |one: &ClusterEigenvalue| {
+        Some(units.outward(Quantity::Growth, one.uncertainty)).filter(|x| x.is_finite())
+    };
+    let known = found.stability.as_ref();
+    let eigenvalues = known.map(|known| &known.eigenvalues);
+    let [eigenvalues, eigenvalue_uncertainty] = match eigenvalues {
+        None => [Value::Null, Value::Null],
+        Some(all) if system.interfaces > 2 => {
             let value = |one: &ClusterEigenvalue| {
                 let mut told = json!({
                     "value": pair(&one.value),
@@ -100,21 +103,19 @@ fn object(found: &ClassifiedEquilibrium, system: &System) -> Value {
                 }
                 told
             };
-            let radius = |one: &ClusterEigenvalue| {
-                Some(units.outward(Quantity::Growth, one.uncertainty)).filter(|x| x.is_finite())
-            };
             [
                 all.iter().map(value).collect(),
                 all.iter().map(radius).collect(),
             ]
         }
-        (Some(stability), None) => {
-            let known = |i| stability.eigenvalues.get(i).map(pair);
-            let radius = |i| stability.uncertainty.get(i).copied();
-            let radius = |i| radius(i).map(|x| units.outward(Quantity::Growth, x));
+        // As many as there are, null where one is beyond the range of doubles
+        Some(all) => {
+            let each = 0..=system.interfaces;
             [
-                json!((0..count).map(known).collect::<Vec<_>>()),
-                json!((0..count).map(radius).collect::<Vec<_>>()),
+                each.clone()
+                    .map(|i| json!(all.get(i).map(|one| pair(&one.value))))
+                    .collect(),
+                each.map(|i| json!(all.get(i).and_then(radius))).collect(),
             ]
         }
     };
@@ -129,7 +130,8 @@ fn object(found: &ClassifiedEquilibrium, system: &System) -> Value {
         "slip_rate_uncertainty": out(Quantity::SlipRate, &equilibrium.slip_rate_uncertainty()),
         "eigenvalues": eigenvalues,
         "eigenvalue_uncertainty": eigenvalue_uncertainty,
-        "verdict": found.stability.as_ref().map(|s| s.verdict().name()),
+        "unstable": known.map(ClusterStability::unstable),
+        "verdict": known.map(|known| known.verdict.name()),
         "residual": found.residual,
     });
     if system.unequal.is_none() {

@@ -1,6 +1,6 @@
 //! The rows of branches and of curves, and the way back from CSV.
 
-use twinslip::bifurcation::clusters::{ClusterOfRow, ClusterRow};
+use twinslip::bifurcation::equilibria::{ClusterOfRow, EquilibriumOfRow};
 use twinslip::bifurcation::{BranchRow, Criticality, Event, Label, LocusRow, Special};
 use twinslip::equilibrium::{Symmetry, Verdict};
 use twinslip::number::Uncertain;
@@ -166,7 +166,8 @@ impl CurveRow for BranchRow {
     }
 
     fn is_mirrored(&self) -> bool {
-        self.symmetry == Symmetry::Asymmetric
+        let share = self.equilibrium.as_ref().and_then(|one| one.share);
+        self.symmetry == Symmetry::Asymmetric && share.is_none()
     }
 
     fn place(&self, _: &[&str], units: &Units) -> String {
@@ -217,59 +218,32 @@ impl SlabRow for BranchRow {
             ln_abs_multiplier: [None; 2],
             verdict: verdict(cell)?,
             label: Label::named(&cell("label")),
+            equilibrium: equilibrium(cell, units),
         })
     }
 }
 
-impl CurveRow for ClusterRow {
-    type Special = Special;
-
-    fn number(&self) -> usize {
-        self.branch
-    }
-
-    fn place(&self, _: &[&str], units: &Units) -> String {
-        loading(self.driving, self.stiffness, units)
-    }
-
-    fn undecided(&self) -> bool {
-        self.verdict == Verdict::Undecided && matches!(self.label, None | Some(Label::Uz))
-    }
-}
-
-impl SlabRow for ClusterRow {
-    fn of(event: Event) -> Option<Self> {
-        match event {
-            Event::Cluster(row) => Some(row),
-            _ => None,
-        }
-    }
-
-    fn read(cell: &dyn Fn(&str) -> String, units: &Units) -> Option<Self> {
-        let number = |name: &str, quantity| {
-            let x = cell(name).parse::<f64>().ok()?;
-            Some(units.inward(quantity, x))
-        };
-        let count = |name: &str| cell(name).parse::<usize>().ok();
-        let cluster = |i: usize| {
-            Some(ClusterOfRow {
-                count: count(&format!("count_{i}"))?,
-                state: number(&format!("state_{i}"), Quantity::State)?,
-                slip_rate: number(&format!("slip_rate_{i}"), Quantity::SlipRate)?,
-            })
-        };
-        Some(ClusterRow {
-            branch: count("branch")?,
-            share: share(cell)?,
-            driving: number("driving", Quantity::SlipRate)?,
-            stiffness: number("stiffness", Quantity::Stiffness)?,
-            stress: number("stress", Quantity::Stress)?,
-            clusters: (1..=3).map_while(cluster).collect(),
-            unstable: count("unstable")?,
-            verdict: verdict(cell)?,
-            label: Label::named(&cell("label")),
+/// What there is of an equilibrium beside; of more than two interfaces the columns have clusters.
+fn equilibrium(cell: &dyn Fn(&str) -> String, units: &Units) -> Option<EquilibriumOfRow> {
+    let number = |name: &str, quantity| {
+        let x = cell(name).parse::<f64>().ok()?;
+        Some(units.inward(quantity, x))
+    };
+    let count = |name: &str| cell(name).parse::<usize>().ok();
+    let cluster = |i: usize| {
+        Some(ClusterOfRow {
+            count: count(&format!("count_{i}"))?,
+            state: number(&format!("state_{i}"), Quantity::State)?,
+            slip_rate: number(&format!("slip_rate_{i}"), Quantity::SlipRate)?,
         })
-    }
+    };
+    Some(EquilibriumOfRow {
+        share: share(cell),
+        clusters: (1..=3).map_while(cluster).collect(),
+        // Not shown but in the line itself, which is kept as it stands.
+        eigenvalues: Vec::new(),
+        unstable: count("unstable")?,
+    })
 }
 
 impl CurveRow for LocusRow {

@@ -206,7 +206,7 @@ impl<'a> Pieces<'a> {
                     voice.says(Reached::Points(rows.len()));
                 }
                 Event::Special(point) => special.push(point),
-                Event::Locus(_) | Event::Cluster(_) => {}
+                Event::Locus(_) => {}
             }
             self.flow()
         })?;
@@ -231,7 +231,7 @@ impl<'a> Pieces<'a> {
                     voice.says(Reached::Points(rows.len()));
                 }
                 Event::Special(point) => special.push(point),
-                Event::Branch(_) | Event::Cluster(_) => {}
+                Event::Branch(_) => {}
             }
             self.flow()
         })?;

@@ -4,7 +4,6 @@
 //! P_3 is linear in K, so that K is a function of a real root: where that has an extremum Q_3 touches L, and two real roots
 //! become a complex pair or come from one.
 
-use super::crossing::{self, QuadraticRoot};
 use crate::equilibrium::{Interface, routh_hurwitz};
 use crate::friction::AnyLaw;
 use crate::number::polynomial::{evaluate, roots};
@@ -107,8 +106,25 @@ impl CharacteristicCubic {
 
     /// k_c* (34), at which two roots are imaginary, and their omega; `None` where there is none.
     pub fn critical_stiffness(&self) -> Option<(f64, f64)> {
-        let k = crossing::asymmetric(&self.one, &self.two, QuadraticRoot::Larger);
-        let squared = crossing::asymmetric_frequency(&self.one, &self.two, k);
+        let (one, two) = (&self.one, &self.two);
+        let a_3 = self.compliance();
+        let (sum, product) = (one.s + two.s, one.s * two.s);
+        // c of (42), which is c_2 c_1 = c_0 of (30); a_i s_i is one number
+        let c = one.a_s + two.a_s - a_3 * sum;
+        let quadratic = c * a_3;
+        let half = 0.5 * (one.a_s * two.s + two.a_s * one.s - c * sum);
+        let constant = -product * sum;
+        let discriminant = (half * half - quadratic * constant).sqrt();
+        // without the subtraction of like numbers
+        let adding = match half > 0.0 {
+            true => -(half + discriminant),
+            false => discriminant - half,
+        };
+        let k = match (adding > 0.0) == (quadratic > 0.0) {
+            true => adding / quadratic,
+            false => constant / adding,
+        };
+        let squared = routh_hurwitz(one, two, k)[1];
         (k > 0.0 && k.is_finite() && squared > 0.0).then(|| (k, squared.sqrt()))
     }
 }

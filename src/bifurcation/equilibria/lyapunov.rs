@@ -208,22 +208,28 @@ fn product(a: &ComplexVector, b: &ComplexVector) -> Complex {
 
 /// l_1, and the size of the terms whose sum it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::bifurcation) struct FirstLyapunov {
+pub(super) struct FirstLyapunov {
     pub value: f64,
     pub scale: f64,
 }
 
 impl FirstLyapunov {
-    /// The sign, unless only rounding is left: with the Dieterich-Ruina and the slip law l_1 is zero throughout.
-    pub fn sign(&self) -> Option<f64> {
-        /// Of 31 digits this many certainly are right.
-        const KNOWN: f64 = 1e-20;
-        (self.value.abs() > KNOWN * self.scale).then(|| self.value.signum())
+    /// l_1 in parts of the terms whose sum it is.
+    pub fn part(&self) -> f64 {
+        self.value / self.scale
     }
+
+    /// The sign, unless it depends on how the law's parameters are rounded: with the Dieterich-Ruina and the slip law l_1 is zero throughout.
+    pub fn sign(&self) -> Option<f64> {
+        (self.part().abs() > Self::ROUNDING).then(|| self.value.signum())
+    }
+
+    /// The part of the terms that the rounding of the law's parameters may change.
+    pub const ROUNDING: f64 = 100.0 * f64::EPSILON;
 }
 
 /// At the equilibrium with these slip rates, one per interface, where the eigenvalues +-i omega cross at stiffness K.
-pub(in crate::bifurcation) fn first_lyapunov(
+pub(super) fn first_lyapunov(
     law: &impl Law,
     rates: &[Number],
     k: Number,

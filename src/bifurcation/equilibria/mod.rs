@@ -1,104 +1,92 @@
 //! Branches of equilibria, and the curves of their bifurcations in the (V_H, K) plane.
 //!
-//! Equilibria are the steady states (20); their pitchforks, folds and Hopf points are found by [`continuation`](crate::continuation)
-//! and then computed from closed forms and one-dimensional zeros, to the last digits and with error budgets.
+//! An equilibrium of N equal interfaces (20) is a share of them among the slow, the middle and the fast branch of the steady curve, and
+//! the states of a share are a curve: V_H, the eigenvalues and the conditions of all bifurcations are functions of the middle rate that
+//! are written down (see [`equilibrium`](crate::equilibrium)). Nothing is followed step by step; every share is looked at between two
+//! extrema of the steady stress. Special points are computed in 31 digits, with error budgets.
+//!
+//! At an extremum a share passes into another one: with k interfaces sticking, (k, N - k, 0), (k, 0, N - k) and (0, k, N - k) are one
+//! branch, of two clusters. It begins where the interfaces stop to slide alike, and ends so: of two interfaces at the pitchforks (23).
+//! Where n > 1 interfaces pass the extremum together they may part: there the branches of three clusters begin and end, and n - 1
+//! eigenvalues within the cluster are zero.
+//!
+//! Equilibria of any other system are followed by [`generic`].
 
 mod bialternate;
 mod branch;
-mod branch_observer;
+mod course;
 mod critical;
-mod crossing;
 mod cubic;
-mod curves;
 pub mod generic;
 pub mod generic_crossing;
 pub mod generic_curve;
 mod generic_curve_observer;
 mod generic_curve_problem;
 mod generic_observer;
-pub(crate) mod hopf;
+mod hopf;
 mod hopf_curve;
-pub(crate) mod hopf_special;
-pub(super) mod lyapunov;
+mod locus;
+mod lyapunov;
 pub mod multiple;
-mod pieces;
-mod rates;
-pub(super) mod special;
+mod row;
+mod special;
 mod stationary;
-mod trace;
 mod unexplained;
 mod vertical;
 
-use super::{BranchRequest, EventObserver, LocusKind, LocusRequest, Parameter, Special, within};
-use crate::equilibrium::Symmetry;
+use super::{BranchRequest, EventObserver, LocusKind, LocusRequest, within};
 use crate::error::{Error, Result};
-use crate::friction::AnyLaw;
-use crate::orbit::HopfPoint;
 pub use cubic::{CharacteristicCubic, Tangency};
-use curves::CurveVariables;
+pub(super) use hopf::hopf;
+pub use row::{ClusterOfRow, EquilibriumOfRow};
 use special::Teller;
 
-/// All branches of equilibria over a range of V_H at fixed K, or of K at fixed V_H, with their special points.
+/// All branches of equilibria of N equal interfaces over a range of V_H at fixed K, or of K at fixed V_H, with their special points.
 ///
-/// Symmetric branch first. Labels: `BP` (23), with the coefficient of (24); `LP`, the fold V_sn; `HB` with the first Lyapunov
-/// coefficient, where <q, q> = 1 in (tau, psi_1, psi_2), and the period 2 pi / omega; `UZ` and `EP`; `MX` where a branch had to
-/// be given up. States that differ by an exchange of the interfaces are one. A branch ends at a pitchfork, as `BP`.
+/// The branch on which all slide alike comes first, then those of two clusters by the number of interfaces that stick, then those of
+/// three. A branch that leaves the range and comes back has a number for each stretch, which begins at its end nearer to the begin of the
+/// range. Labels: `BP` where interfaces that slide alike may part, told once for all branches that meet there: of two interfaces the
+/// pitchfork (23) with the coefficient of (24); `LP` a fold, as V_sn; `HB` with the period 2 pi / omega and the first Lyapunov
+/// coefficient, where <q, q> = 1 in (tau, psi_1, .., psi_N); `UZ`, `EP`. States that differ by the order of the interfaces are one.
 ///
 /// # Errors
-/// [`Error::Parameter`] or [`Error::Input`] for a request that makes no sense; those of
-/// [`steady_states`](crate::equilibrium::steady_states); [`Error::TooManyPoints`]. That the observer ended it is none.
+/// [`Error::Parameter`] or [`Error::Input`] for a request that makes no sense, which has more points than it allows, or of a law
+/// whose extrema are not certain; [`Error::NotConverged`]; [`Error::TooManyPoints`]. That the observer ended it is none.
 pub fn branch(request: &BranchRequest, seen: EventObserver<'_>) -> Result<()> {
-    request.checked()?;
+    request.checked_of_many()?;
     within(request.max_points, seen, |seen| {
         branch::branch(request, seen)
     })
 }
 
-/// The curves of pitchforks, of folds or of Hopf points of equilibria within ranges of V_H and K.
+/// The curves of Hopf points, of folds or of branch points of equilibria of N equal interfaces within ranges of V_H and K, of every share.
 ///
-/// Along Hopf points: `TOP`, the largest K; `GH`, a zero of the first Lyapunov coefficient; `BT`, `ZH`; `UZ` at every crossing of
-/// a wanted value; `EP` where a curve leaves the ranges.
+/// Folds and branch points are lines along K. Along Hopf points: `TOP`, the largest K of a share; `GH`, a zero of the first Lyapunov
+/// coefficient; `ZH`, a fold; `BT`, on fold lines too; `UZ` at every crossing of a wanted value; `EP` where a curve leaves the ranges.
 ///
 /// # Errors
-/// As of [`branch()`]; [`Error::Input`] for a kind of curve that is not of equilibria.
+/// As of [`branch()`]; [`Error::Input`] for a kind of curve that is not of equilibria, or of which one interface has none.
 pub fn locus(request: &LocusRequest, seen: EventObserver<'_>) -> Result<()> {
-    request.checked()?;
-    within(request.max_points, seen, |seen| curve(request, seen))
-}
-
-fn curve(request: &LocusRequest, seen: EventObserver<'_>) -> Result<()> {
-    let tolerance = request.tolerance;
-    let mut teller = Teller::new(seen, tolerance, &request.skip);
-    // an observer's end is no error
-    let _ = match request.kind {
-        LocusKind::Hopf => hopf_curve::locus(request, &mut teller)?,
-        LocusKind::Pitchfork | LocusKind::SaddleNode if request.slab.interfaces == 1 => {
-            return Err(Error::Input(
-                "a single interface has one steady state, without pitchforks and folds; take two"
-                    .into(),
-            ));
-        }
-        LocusKind::Pitchfork | LocusKind::SaddleNode => vertical::locus(request, &mut teller)?,
-        _ => {
-            return Err(Error::Input(
-                "this is a curve of orbits, not of equilibria".into(),
-            ));
-        }
-    };
-    Ok(())
-}
-
-/// A Hopf point with its budgets and its first Lyapunov coefficient, as [`branch()`] tells of it. `None` where it is not decided
-/// that there is one.
-pub(super) fn hopf(law: &AnyLaw, along: Parameter, point: &HopfPoint) -> Option<Special> {
-    let rates = &point.equilibrium.slip_rate;
-    let interfaces = rates.len();
-    let curve = match point.equilibrium.symmetry {
-        Symmetry::Symmetric => CurveVariables::Symmetric { interfaces },
-        Symmetry::Asymmetric => CurveVariables::Asymmetric,
-    };
-    let pair = [rates[0], rates[interfaces - 1]];
-    let at = [point.driving, point.stiffness];
-    let found = hopf_special::hopf_point(law, curve, along, at, pair);
-    found.map(|(special, _)| special)
+    request.checked_of_many()?;
+    let request = &request.ordered();
+    within(request.max_points, seen, |seen| {
+        let mut teller = Teller::new(seen, request.tolerance, &request.skip);
+        // an observer's end is no error
+        let _ = match request.kind {
+            LocusKind::Hopf => locus::locus(request, &mut teller)?,
+            LocusKind::Pitchfork | LocusKind::SaddleNode if request.slab.interfaces == 1 => {
+                return Err(Error::Input(
+                    "a single interface has one steady state, without pitchforks and folds; take two"
+                        .into(),
+                ));
+            }
+            LocusKind::Pitchfork | LocusKind::SaddleNode => vertical::locus(request, &mut teller)?,
+            _ => {
+                return Err(Error::Input(
+                    "this is a curve of orbits, not of equilibria".into(),
+                ));
+            }
+        };
+        Ok(())
+    })
 }

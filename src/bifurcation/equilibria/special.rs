@@ -1,12 +1,11 @@
 //! Handing on what is found, with a word where a special point is less accurate than was asked for.
 
-use crate::bifurcation::clusters::ClusterRow;
 use crate::bifurcation::{BranchRow, Event, EventObserver, LocusRow, Special};
 use crate::equilibrium::Symmetry;
 use std::ops::ControlFlow;
 
 /// Tells the observer.
-pub(in crate::bifurcation) struct Teller<'a> {
+pub(super) struct Teller<'a> {
     seen: EventObserver<'a>,
     /// Asked for, relative.
     tolerance: f64,
@@ -36,11 +35,6 @@ impl<'a> Teller<'a> {
     pub fn branch(&mut self, row: BranchRow) -> ControlFlow<()> {
         self.on(row.branch, row.symmetry);
         self.tell(Event::Branch(row))
-    }
-
-    pub fn cluster(&mut self, row: ClusterRow) -> ControlFlow<()> {
-        self.on(row.branch, row.symmetry());
-        self.tell(Event::Cluster(row))
     }
 
     pub fn locus(&mut self, row: LocusRow) -> ControlFlow<()> {

@@ -345,25 +345,15 @@ impl GeneralPoint {
 
     /// Stability.
     pub fn verdict(&self) -> Verdict {
-        /// What rounding leaves of an eigenvalue that is zero, against the largest.
-        const NEUTRAL: f64 = 1e-12;
-        let (largest, neutral) = match &self.solution {
+        let largest = match &self.solution {
             GeneralSolution::Equilibrium { eigenvalues, .. } => {
-                let most = eigenvalues.iter().map(|z| z.norm()).fold(0.0, f64::max);
-                (
-                    eigenvalues.first().map_or(f64::NAN, |z| z.re),
-                    NEUTRAL * most,
-                )
+                eigenvalues.first().map_or(f64::NAN, |z| z.re)
             }
             GeneralSolution::Orbit {
-                log_multipliers,
-                neutral,
-                ..
-            } => (
-                log_multipliers.first().copied().unwrap_or(f64::NAN),
-                *neutral,
-            ),
+                log_multipliers, ..
+            } => log_multipliers.first().copied().unwrap_or(f64::NAN),
         };
+        let neutral = self.neutral();
         let within = self.within.iter().map(|within| within.ln_abs.value);
         // Of what is not known nothing is larger.
         let larger = |a: f64, b: f64| if a > b || a.is_nan() { a } else { b };
@@ -374,6 +364,29 @@ impl GeneralPoint {
             Verdict::Stable
         } else {
             Verdict::Undecided
+        }
+    }
+
+    /// How many eigenvalues of an equilibrium have positive real parts, those within clusters as often as they count.
+    pub fn unstable(&self) -> Option<usize> {
+        let GeneralSolution::Equilibrium { eigenvalues, .. } = &self.solution else {
+            return None;
+        };
+        let neutral = self.neutral();
+        let together = eigenvalues.iter().filter(|z| z.re > neutral).count();
+        let within = self.within.iter().filter(|one| one.ln_abs.value > neutral);
+        Some(together + within.map(|one| one.multiplicity).sum::<usize>())
+    }
+
+    /// What the real part of an eigenvalue, or ln |mu|, may be where it is zero.
+    fn neutral(&self) -> f64 {
+        /// What rounding leaves of an eigenvalue that is zero, against the largest.
+        const NEUTRAL: f64 = 1e-12;
+        match &self.solution {
+            GeneralSolution::Equilibrium { eigenvalues, .. } => {
+                NEUTRAL * eigenvalues.iter().map(|z| z.norm()).fold(0.0, f64::max)
+            }
+            GeneralSolution::Orbit { neutral, .. } => *neutral,
         }
     }
 }

@@ -233,6 +233,7 @@ impl BranchRequest {
             ln_abs_multiplier: [0, 1].map(|i| log_multipliers.get(i).copied()),
             verdict: point.verdict(),
             label: point.label,
+            equilibrium: None,
         })
     }
 }

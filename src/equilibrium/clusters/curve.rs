@@ -42,18 +42,47 @@ impl<'a> SteadyCurve<'a> {
             radius.is_finite().then(|| Interval::around(v, radius))
         };
         let extrema: Option<Vec<_>> = law.steady_extrema().into_iter().map(around).collect();
-        let (peak, trough) = match extrema?[..] {
+        Some(Self::cut(law, fastest, &extrema?))
+    }
+
+    /// The same with the extrema as doubles.
+    pub fn rough(law: &'a AnyLaw, fastest: f64) -> Self {
+        let extrema = law.steady_extrema().into_iter().map(Interval::constant);
+        Self::cut(law, fastest, &extrema.collect::<Vec<_>>())
+    }
+
+    fn cut(law: &'a AnyLaw, fastest: f64, extrema: &[Interval]) -> Self {
+        let (peak, trough) = match *extrema {
             [trough] if law.weakens_from_rest() => (None, Some(trough)),
             [peak] => (Some(peak), None),
             [peak, trough] => (Some(peak), Some(trough)),
             _ => (None, None),
         };
-        Some(SteadyCurve {
+        SteadyCurve {
             law,
             peak,
             trough,
             fastest,
-        })
+        }
+    }
+
+    /// With those of its branches alone that so many interfaces slide on, and the middle one.
+    pub fn cut_for(&self, counts: &Rates<usize>) -> Self {
+        SteadyCurve {
+            peak: self.peak.filter(|_| counts[SLOW] > 0),
+            trough: self.trough.filter(|_| counts[FAST] > 0),
+            ..*self
+        }
+    }
+
+    /// The curve as one, not cut: where all slide alike it makes no difference on which branch.
+    pub fn whole(law: &'a AnyLaw) -> Self {
+        SteadyCurve {
+            law,
+            peak: None,
+            trough: None,
+            fastest: f64::INFINITY,
+        }
     }
 
     /// Which branches there are.
@@ -194,16 +223,18 @@ impl<'a> SteadyCurve<'a> {
 
     /// The rates in 31 digits from doubles.
     pub fn precise(&self, middle: DoubleDouble, near: Rates<f64>) -> Rates<DoubleDouble> {
-        let refined = |v: f64, exists: bool| {
-            if !exists || v == 0.0 {
-                return DoubleDouble::ZERO;
-            }
-            newton(DoubleDouble::from(v), f64::INFINITY, |v| {
+        std::array::from_fn(|i| self.precise_on(i, middle, near[i]))
+    }
+
+    /// The rate on one branch in 31 digits from a double.
+    pub fn precise_on(&self, branch: usize, middle: DoubleDouble, near: f64) -> DoubleDouble {
+        match branch {
+            MIDDLE => middle,
+            _ if !self.has()[branch] || near == 0.0 => DoubleDouble::ZERO,
+            _ => newton(DoubleDouble::from(near), f64::INFINITY, |v| {
                 self.quotient_along(v, middle)
-            })
-        };
-        let [slow, _, fast] = self.has();
-        [refined(near[SLOW], slow), middle, refined(near[FAST], fast)]
+            }),
+        }
     }
 
     /// d ln v/d ln x of the rate v on another branch under the stress of x.

@@ -104,16 +104,17 @@ pub(crate) fn share_states(
             let fast = DoubleDouble::from(driving) / share[FAST] as f64;
             let rates = [DoubleDouble::ZERO, DoubleDouble::ZERO, fast];
             let tiny = f64::MIN_POSITIVE;
-            states.push((rates, [tiny, tiny, fast.to_f64() * f64::EPSILON]));
+            let radii = [tiny, tiny, fast.to_f64() * f64::EPSILON];
+            states.push((rates, root::Reach::apart(radii)));
         }
         for bracket in isolation.brackets {
             states.push(root::in_bracket(&curve, &share, driving, bracket)?);
         }
-        for (rates, radii) in states {
+        for (rates, reach) in states {
             seen(ShareState {
                 share,
                 rate: rates[MIDDLE],
-                state: of_share(law, driving, &share, &rates, &radii),
+                state: of_share(law, driving, &share, &rates, &reach),
             });
         }
     }
@@ -134,12 +135,13 @@ fn of_share(
     driving: f64,
     counts: &Rates<usize>,
     rates: &Rates<DoubleDouble>,
-    radii: &Rates<f64>,
+    reach: &root::Reach,
 ) -> Equilibrium {
     let present = || [SLOW, MIDDLE, FAST].into_iter().filter(|&i| counts[i] > 0);
-    let known: Vec<_> = present().map(|i| (rates[i], radii[i])).collect();
+    let known: Vec<_> = present().map(|i| (rates[i], reach.radii[i])).collect();
     let mut state = Equilibrium::at(law, driving, Symmetry::Asymmetric, &known);
     state.counts = present().map(|i| counts[i]).collect();
+    state.together = present().map(|i| reach.together[i]).collect();
     state
 }
 

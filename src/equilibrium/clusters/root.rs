@@ -11,13 +11,32 @@ use crate::error::Result;
 use crate::friction::effects;
 use crate::number::{DoubleDouble, Interval, Jet, Real, bracketed_root};
 
-/// The rates of a share, and the distances within which the true ones lie: infinite where there are no bounds, as at a fold.
+/// How far the true rates may be.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Reach {
+    /// The distances within which they lie: infinite where there are no bounds, as at a fold.
+    pub radii: Rates<f64>,
+    /// The part of these by which the rates move together, as the middle one does.
+    pub together: Rates<f64>,
+}
+
+impl Reach {
+    /// No more than distances.
+    pub fn apart(radii: Rates<f64>) -> Self {
+        Reach {
+            radii,
+            together: [0.0; 3],
+        }
+    }
+}
+
+/// The rates of a share, and how far the true ones may be.
 pub(super) fn in_bracket(
     curve: &SteadyCurve<'_>,
     counts: &Rates<usize>,
     driving: f64,
     (low, high, left): (f64, f64, f64),
-) -> Result<(Rates<DoubleDouble>, Rates<f64>)> {
+) -> Result<(Rates<DoubleDouble>, Reach)> {
     let along = |x: f64| {
         let rates = curve.rates(x);
         let excess = weighted(counts, &rates) - driving;
@@ -43,29 +62,32 @@ pub(super) fn in_bracket(
     });
     let x = if precise.is_finite() { precise } else { near };
     let rates = curve.precise(x, curve.rates(x.to_f64()));
-    Ok((rates, radii(curve, counts, driving, &rates)))
+    Ok((rates, reach(curve, counts, driving, &rates)))
 }
 
 /// d v/d ln x on each branch.
-pub(super) fn changes<T: Real>(curve: &SteadyCurve<'_>, rates: &Rates<T>) -> Rates<T> {
-    let has = curve.has();
-    std::array::from_fn(|i| match i {
-        MIDDLE => rates[i],
-        _ if has[i] && rates[i].leading() > 0.0 => {
-            rates[i] * curve.log_ratio(rates[MIDDLE], rates[i])
-        }
-        _ => T::constant(0.0),
-    })
+fn changes<T: Real>(curve: &SteadyCurve<'_>, rates: &Rates<T>) -> Rates<T> {
+    std::array::from_fn(|i| change(curve, i, rates[MIDDLE], rates[i]))
 }
 
-pub(super) fn radii(
+/// d v/d ln x of the rate on one branch.
+pub(super) fn change<T: Real>(curve: &SteadyCurve<'_>, branch: usize, middle: T, rate: T) -> T {
+    match branch {
+        MIDDLE => middle,
+        _ if curve.has()[branch] && rate.leading() > 0.0 => rate * curve.log_ratio(middle, rate),
+        _ => T::constant(0.0),
+    }
+}
+
+pub(super) fn reach(
     curve: &SteadyCurve<'_>,
     counts: &Rates<usize>,
     driving: f64,
     rates: &Rates<DoubleDouble>,
-) -> Rates<f64> {
+) -> Reach {
     /// Times that a larger cell is tried.
     const TRIALS: usize = 8;
+    let curve = &curve.cut_for(counts);
     let doubles = rates.map(DoubleDouble::to_f64);
     let x = doubles[MIDDLE];
     let moved = moved(curve, &doubles);
@@ -81,23 +103,37 @@ pub(super) fn radii(
         if radius.is_nan() || radius >= 0.5 * x {
             break;
         }
-        let [low, high] = [x - radius, x + radius].map(Interval::constant);
-        let cell = Cell::new(curve, curve.enclosed(low), curve.enclosed(high));
-        let slope = cell.slope(counts);
+        let (low, high) = (x - radius, x + radius);
         // the rate falls or rises by this much at the least over the radius
-        let least = slope.lo().max(-slope.hi()) * (radius / high.hi());
-        if least > unknown {
-            let changes = cell.changes();
-            return std::array::from_fn(|i| {
-                let own: f64 = moved.iter().map(|shift| shift[i].abs()).sum();
-                let with_x = changes[i].distance_from(0.0) * (radius / low.lo());
-                let far = if i == MIDDLE { radius } else { with_x };
-                far + own + doubles[i] * f64::EPSILON + f64::MIN_POSITIVE
+        let least = |slope: Interval| slope.lo().max(-slope.hi()) * (radius / high);
+        let mut changes = self::changes(curve, &curve.enclosed(Interval::new(low, high)));
+        let mut falls = least(weighted(counts, &changes));
+        // beside an extremum a cell knows more of the slope
+        if falls.is_nan() || falls <= unknown {
+            let [low, high] = [low, high].map(|x| curve.enclosed(Interval::constant(x)));
+            let cell = Cell::new(curve, low, high);
+            (changes, falls) = (cell.changes(), least(cell.slope(counts)));
+        }
+        if falls > unknown {
+            let together: Rates<f64> = std::array::from_fn(|i| match i {
+                MIDDLE => radius,
+                _ => changes[i].leading() * (radius / x),
             });
+            let radii = std::array::from_fn(|i| {
+                let far = match i {
+                    MIDDLE => radius,
+                    _ => changes[i].distance_from(0.0) * (radius / low),
+                };
+                // the change is one within its bounds, on either side of that in the middle
+                let spread = 2.0 * (far - together[i].abs());
+                let own: f64 = moved.iter().map(|shift| shift[i].abs()).sum();
+                together[i].abs() + spread + own + doubles[i] * f64::EPSILON + f64::MIN_POSITIVE
+            });
+            return Reach { radii, together };
         }
         radius *= 4.0;
     }
-    [f64::INFINITY; 3]
+    Reach::apart([f64::INFINITY; 3])
 }
 
 /// How the rates on the other branches move under the stress of x where a parameter of the law is off by its rounding, for each.

@@ -4,7 +4,7 @@
 //! z + K sum_j n_j (1/F_V + a_j/(z - s_j)) = 0, (30) for several clusters, with the letters of (31). Every a_j is positive, so that one root lies between
 //! any two neighbouring s_j. Within a cluster the interfaces part at a fixed stress: there s_j is the eigenvalue, n_j - 1 times.
 
-use super::super::eigenvalues::Verdict;
+use super::super::eigenvalues::{Stability, Verdict};
 use super::super::interface::Interface;
 use super::super::polynomial::{InexactCoefficients, roots_with};
 use super::super::{Equilibrium, OF_31_DIGITS};
@@ -60,6 +60,23 @@ impl ClusterStability {
     pub fn unstable(&self) -> usize {
         let growing = self.eigenvalues.iter().filter(|one| one.value.re > 0.0);
         growing.map(|one| one.multiplicity).sum()
+    }
+}
+
+impl From<Stability> for ClusterStability {
+    /// Where every interface is a cluster.
+    fn from(stability: Stability) -> Self {
+        let all = stability.eigenvalues.into_iter();
+        let one = |(value, uncertainty)| ClusterEigenvalue {
+            value,
+            uncertainty,
+            multiplicity: 1,
+            kind: EigenvalueKind::Clusters,
+        };
+        ClusterStability {
+            eigenvalues: all.zip(stability.uncertainty).map(one).collect(),
+            verdict: stability.verdict,
+        }
     }
 }
 
@@ -170,31 +187,57 @@ fn coefficients<T: Real>(
     sum
 }
 
-/// The same with what they may be off.
+/// The slopes of the coefficients in each of N rates.
+fn slopes<const N: usize>(
+    law: &AnyLaw,
+    counts: &[usize],
+    bounds: &[Interval],
+    stiffness: f64,
+) -> [[Interval; CLUSTERS]; COUNT] {
+    let variables = bounds.iter().enumerate();
+    let variables: Vec<Jet<Interval, N>> = variables
+        .map(|(i, &within)| Jet::variable(within, i))
+        .collect();
+    let zero = Interval::constant(0.0);
+    coefficients(law, counts, &variables, stiffness)
+        .map(|one| std::array::from_fn(|i| one.gradient.get(i).copied().unwrap_or(zero)))
+}
+
+/// The coefficients with what they may be off.
 fn bounded(law: &AnyLaw, equilibrium: &Equilibrium, stiffness: f64) -> InexactCoefficients {
     let (counts, rates) = (&equilibrium.counts, &equilibrium.slip_rate);
     let exact = coefficients(law, counts, &equilibrium.precise, stiffness);
     let of_inputs = effects(law, |law| coefficients(law, counts, rates, stiffness));
-    let along = |at: &dyn Fn(usize) -> Interval| {
-        let variables: Vec<Jet<Interval, CLUSTERS>> =
-            (0..rates.len()).map(|i| Jet::variable(at(i), i)).collect();
-        coefficients(law, counts, &variables, stiffness)
+    let point: Vec<Interval> = rates.iter().map(|&v| Interval::constant(v)).collect();
+    let at_point = coefficients(law, counts, &point, stiffness);
+    let bounds = &equilibrium.rate_bounds;
+    let slopes = match rates.len() {
+        1 => slopes::<1>(law, counts, bounds, stiffness),
+        2 => slopes::<2>(law, counts, bounds, stiffness),
+        _ => slopes::<CLUSTERS>(law, counts, bounds, stiffness),
     };
-    let at_point = along(&|i| Interval::constant(rates[i]));
-    let around = along(&|i| equilibrium.rate_bounds[i]);
     let radii = equilibrium.slip_rate_uncertainty();
     let mut shifts: Vec<_> = of_inputs.iter().map(|effect| effect.to_vec()).collect();
+    let middle = |i: usize, of: usize| slopes[i][of].leading();
+    let together = equilibrium.together.iter().enumerate();
+    let together = |i: usize| {
+        together
+            .clone()
+            .map(|(of, part)| middle(i, of) * part)
+            .sum::<f64>()
+    };
+    shifts.push((0..COUNT).map(together).collect());
     for (of, radius) in radii.iter().enumerate() {
-        let middle = |i: usize| around[i].gradient[of].leading() * radius;
-        shifts.push((0..COUNT).map(middle).collect());
+        let own = radius - equilibrium.together[of].abs();
+        shifts.push((0..COUNT).map(|i| middle(i, of) * own).collect());
     }
     let rest = |i: usize| {
         let value = exact[i].to_f64();
         // below, 31 digits are no longer that many
         let digits = (1e-250..1e250).contains(&value.abs());
         let part = if digits { OF_31_DIGITS } else { 1.0 };
-        let rounding = part * at_point[i].value.distance_from(value);
-        let slope = |of: usize| around[i].gradient[of];
+        let rounding = part * at_point[i].distance_from(value);
+        let slope = |of: usize| slopes[i][of];
         let within = radii.iter().enumerate();
         let within = within.map(|(of, r)| slope(of).distance_from(slope(of).leading()) * r);
         rounding + within.sum::<f64>()

@@ -147,14 +147,19 @@ fn sections() -> Vec<Section> {
             described(&section_columns(&of_two)),
         ),
         section(
-            "branch",
-            "One row for each point of `branch equilibria` or `branch orbits`.",
+            "branch orbits",
+            "One row for each point.",
             described(&views::branch_columns(true, COUNT)),
+        ),
+        section(
+            "branch equilibria",
+            "One row for each point.",
+            described(&views::branch_columns(false, COUNT)),
         ),
         section(
             "branch equilibria of more than two interfaces",
             "One row for each point.",
-            described(&views::cluster_columns()),
+            described(&views::branch_columns(false, COUNT + 1)),
         ),
         section(
             "locus",

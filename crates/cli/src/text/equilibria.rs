@@ -115,6 +115,7 @@ fn object(found: &TextEquilibrium, model: &TextModel) -> Value {
         "eigenvalue_uncertainty".into(),
         json!(found.stability.uncertainty),
     );
+    all.insert("unstable".into(), json!(found.stability.unstable()));
     all.insert("verdict".into(), json!(found.stability.verdict.name()));
     all.insert("residual".into(), json!(found.residual));
     Value::Object(all)

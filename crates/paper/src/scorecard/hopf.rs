@@ -38,7 +38,7 @@ impl HopfCurve {
             match event {
                 Event::Locus(row) => rows.push(row),
                 Event::Special(point) => special.push(point),
-                Event::Branch(_) | Event::Cluster(_) => {}
+                Event::Branch(_) => {}
             }
             ControlFlow::Continue(())
         })?;

@@ -5,9 +5,7 @@ use super::following::{self, Following, landings, range};
 use super::system::System;
 use super::units::{Quantity, Units};
 use serde_json::{Value, json};
-use twinslip::bifurcation::{
-    BranchRequest, EventObserver, Parameter, clusters, equilibria, orbits,
-};
+use twinslip::bifurcation::{BranchRequest, EventObserver, Parameter, equilibria, orbits};
 use twinslip::error::{Error, Result};
 use twinslip::friction::positive;
 use twinslip::model::Loading;
@@ -196,11 +194,8 @@ impl BranchPlan {
         let out = |x| self.system.units.outward(self.along.quantity, x);
         let (from, to) = self.request.range;
         let method = match self.of {
-            BranchKind::Equilibria if self.system.interfaces > 2 => {
-                "each share of the slow, middle and fast branch of the law over its middle rate; the characteristic polynomials"
-            }
             BranchKind::Equilibria => {
-                "all steady states in closed form or from certain brackets; the characteristic polynomials"
+                "each share of the slow, middle and fast branch of the law over its middle rate; the characteristic polynomials"
             }
             BranchKind::Orbits => {
                 "taylor, tangents on, multiple shooting; begins at the Hopf points"
@@ -226,9 +221,6 @@ impl BranchPlan {
             ..self.request.clone()
         };
         match self.of {
-            BranchKind::Equilibria if self.system.interfaces > 2 => {
-                clusters::branch(&request, seen)
-            }
             BranchKind::Equilibria => equilibria::branch(&request, seen),
             BranchKind::Orbits => orbits::branch(&request, seen),
         }

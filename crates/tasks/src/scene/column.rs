@@ -1,6 +1,7 @@
 //! Columns: what rows show, under which names and in which units. Declared once; CSV, tables, objects and pictures follow.
 
 use super::units::{Quantity, Units};
+use nalgebra::Complex;
 use std::borrow::Cow;
 use std::fmt;
 use std::sync::Arc;
@@ -127,6 +128,21 @@ impl<R> Column<R> {
             meaning: Some(meaning),
             ..self
         }
+    }
+
+    /// The real and the imaginary part of the eigenvalue at a place, the first being 0.
+    pub fn eigenvalue(
+        place: usize,
+        quantity: Quantity,
+        of: impl Fn(&R, usize) -> Option<Complex<f64>> + Copy + Send + Sync + 'static,
+    ) -> [Self; 2] {
+        let part = |name: &str, part: fn(Complex<f64>) -> f64| {
+            let name = format!("eigenvalue_{}_{name}", place + 1);
+            Column::new(name, quantity, move |row: &R| {
+                of(row, place).map(part).into()
+            })
+        };
+        [part("re", |z| z.re), part("im", |z| z.im)]
     }
 
     /// The same, but no table shows it.

@@ -3,9 +3,8 @@
 use super::options::EquilibriaOptions;
 use super::system::System;
 use twinslip::equilibrium::{
-    ClusterEigenvalue, ClusterStability, Equilibrium, LawOfEach, Solver, Stability, SteadyStates,
-    Verdict, cluster_stability, cluster_steady_states, stability, steady_states,
-    unequal_steady_states,
+    ClusterStability, Equilibrium, LawOfEach, Solver, SteadyStates, Verdict, cluster_stability,
+    cluster_steady_states, stability, steady_states, unequal_steady_states,
 };
 use twinslip::error::{Error, Result};
 
@@ -28,46 +27,9 @@ pub struct ClassifiedEquilibrium {
     /// The state.
     pub equilibrium: Equilibrium,
     /// Its eigenvalues and verdict, where the stiffness is given.
-    pub stability: Option<AnyStability>,
+    pub stability: Option<ClusterStability>,
     /// The largest residual of its equations.
     pub residual: f64,
-}
-
-/// What is known of the stability of one or two interfaces, or of more.
-#[derive(Debug, Clone, PartialEq)]
-pub enum AnyStability {
-    /// Each eigenvalue by itself.
-    OfEach(Stability),
-    /// Those of clusters, and within these.
-    OfClusters(ClusterStability),
-}
-
-impl AnyStability {
-    /// Stable, unstable or undecided.
-    pub fn verdict(&self) -> Verdict {
-        match self {
-            AnyStability::OfEach(stability) => stability.verdict,
-            AnyStability::OfClusters(stability) => stability.verdict,
-        }
-    }
-}
-
-impl ClassifiedEquilibrium {
-    /// The eigenvalues of one or two interfaces, where the stiffness is given.
-    pub fn of_each(&self) -> Option<&Stability> {
-        match &self.stability {
-            Some(AnyStability::OfEach(stability)) => Some(stability),
-            _ => None,
-        }
-    }
-
-    /// Those of more.
-    pub fn of_clusters(&self) -> Option<&[ClusterEigenvalue]> {
-        match &self.stability {
-            Some(AnyStability::OfClusters(stability)) => Some(&stability.eigenvalues),
-            _ => None,
-        }
-    }
 }
 
 /// All steady states of a plan.
@@ -82,9 +44,10 @@ pub struct ClassifiedEquilibria {
 impl ClassifiedEquilibria {
     /// Of how many the stability is undecided.
     pub fn undecided(&self) -> usize {
-        let verdict =
-            |one: &ClassifiedEquilibrium| one.stability.as_ref().map(AnyStability::verdict);
-        let undecided = |one: &&ClassifiedEquilibrium| verdict(one) == Some(Verdict::Undecided);
+        let undecided = |one: &&ClassifiedEquilibrium| {
+            let known = one.stability.as_ref();
+            known.is_some_and(|stability| stability.verdict == Verdict::Undecided)
+        };
         self.equilibria.iter().filter(undecided).count()
     }
 }
@@ -183,10 +146,10 @@ impl EquilibriaPlan {
             let stiffness = self.system.stiffness;
             let stability = match stiffness {
                 None => None,
-                Some(k) if self.system.interfaces > 2 => Some(AnyStability::OfClusters(
-                    cluster_stability(&self.system.law, &equilibrium, k)?,
-                )),
-                Some(k) => Some(AnyStability::OfEach(stability(laws, &equilibrium, k)?)),
+                Some(k) if self.system.interfaces > 2 => {
+                    Some(cluster_stability(&self.system.law, &equilibrium, k)?)
+                }
+                Some(k) => Some(stability(laws, &equilibrium, k)?.into()),
             };
             Ok(ClassifiedEquilibrium {
                 residual: equilibrium.residual(laws, self.driving),

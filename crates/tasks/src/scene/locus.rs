@@ -6,7 +6,7 @@ use super::general::by_name;
 use super::system::System;
 use super::units::{Quantity, Units};
 use serde_json::{Value, json};
-use twinslip::bifurcation::{EventObserver, LocusKind, LocusRequest, clusters, equilibria, orbits};
+use twinslip::bifurcation::{EventObserver, LocusKind, LocusRequest, equilibria, orbits};
 use twinslip::error::{Error, Result, option_name};
 use twinslip::model::Loading;
 use twinslip::orbit::InterfaceSystem;
@@ -273,12 +273,9 @@ impl LocusPlan {
             skip: known.to_vec(),
             ..self.request.clone()
         };
-        if self.curve.orbits {
-            orbits::locus(&request, seen)
-        } else if self.system.interfaces > 2 {
-            clusters::locus(&request, seen)
-        } else {
-            equilibria::locus(&request, seen)
+        match self.curve.orbits {
+            true => orbits::locus(&request, seen),
+            false => equilibria::locus(&request, seen),
         }
     }
 }

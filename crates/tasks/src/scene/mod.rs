@@ -72,7 +72,7 @@ pub use command::sentence;
 pub use continuation::{BranchOptions, ContinuationOptions, LocusOptions, SearchOptions};
 pub use ensemble::{EnsembleFile, EnsembleOptions, EnsemblePlan, FittedParameter, FrictionFit};
 pub use equations::Subspace;
-pub use equilibria::{AnyStability, ClassifiedEquilibria, ClassifiedEquilibrium, EquilibriaPlan};
+pub use equilibria::{ClassifiedEquilibria, ClassifiedEquilibrium, EquilibriaPlan};
 pub use event::SlipEvent;
 pub use explain::{Keeping, explain};
 pub use file::SceneFile;

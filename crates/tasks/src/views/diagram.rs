@@ -33,6 +33,7 @@ fn at_hopf(special: &Special, slab: &InterfaceSystem) -> Option<BranchRow> {
         ln_abs_multiplier: [None; 2],
         verdict: Verdict::Undecided,
         label: Some(Label::Hb),
+        equilibrium: None,
     })
 }
 
@@ -220,7 +221,7 @@ pub(super) fn symmetry_colour(symmetry: Symmetry) -> usize {
 }
 
 /// Between two points: stable if one is, and the other is, or is a bifurcation.
-fn solid(a: &BranchRow, b: &BranchRow) -> bool {
+pub(super) fn solid(a: &BranchRow, b: &BranchRow) -> bool {
     let verdicts = [a.verdict, b.verdict];
     verdicts.contains(&Verdict::Stable) && !verdicts.contains(&Verdict::Unstable)
 }

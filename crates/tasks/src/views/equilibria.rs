@@ -1,14 +1,14 @@
 //! What steady states show.
 
 use crate::scene::{CellValue, ClassifiedEquilibrium, Column, Quantity};
-use twinslip::equilibrium::{ClusterEigenvalue, Equilibrium};
+use twinslip::equilibrium::{ClusterEigenvalue, ClusterStability, Equilibrium};
 
 type Row = ClassifiedEquilibrium;
 
 /// Interfaces that are told one by one; of more what is told is their clusters.
 const ONE_BY_ONE: usize = 2;
 /// A steady state has so many clusters at most, and so many eigenvalues of different kinds and values.
-const CLUSTERS: usize = 3;
+pub(super) const CLUSTERS: usize = 3;
 const EIGENVALUES: usize = CLUSTERS + 1 + CLUSTERS;
 
 /// The columns of the steady states of so many interfaces, of more than two by clusters. A table has room for what is looked at first: of
@@ -75,74 +75,69 @@ pub fn equilibria_columns(interfaces: usize) -> Vec<Column<ClassifiedEquilibrium
         SlipRate,
         Equilibrium::slip_rate_uncertainty,
     )));
-    let eigenvalues = if by_clusters {
-        EIGENVALUES
-    } else {
-        interfaces + 1
-    };
-    columns.extend((0..eigenvalues).flat_map(|i| eigenvalue_columns(i, by_clusters)));
+    columns.extend(eigenvalue_columns(interfaces, |row: &Row| {
+        let known = row.stability.as_ref();
+        known.map_or(&[], |stability| &stability.eigenvalues)
+    }));
+    for column in &mut columns {
+        column.in_table &=
+            !column.name.starts_with("eigenvalue_") || column.name.starts_with("eigenvalue_1_");
+    }
     columns.extend([
         Column::new("verdict", Number, |row: &Row| {
-            row.stability.as_ref().map(|s| s.verdict().name()).into()
+            row.stability.as_ref().map(|s| s.verdict.name()).into()
         }),
         Column::new("residual", Number, |row: &Row| row.residual.into()).not_in_table(),
+        Column::new("unstable", Number, |row: &Row| {
+            let count = row.stability.as_ref().map(ClusterStability::unstable);
+            count.map_or(CellValue::Number(None), CellValue::from)
+        })
+        .not_in_table(),
     ]);
     columns
 }
 
-/// Those of one eigenvalue.
-fn eigenvalue_columns(i: usize, by_clusters: bool) -> Vec<Column<Row>> {
+/// Those of the eigenvalues of so many interfaces, of more than two with how often each counts and in which direction it points.
+pub(super) fn eigenvalue_columns<R: 'static>(
+    interfaces: usize,
+    of: fn(&R) -> &[ClusterEigenvalue],
+) -> Vec<Column<R>> {
     use Quantity::{Growth, Number};
-    let of_cluster =
-        move |row: &Row| -> Option<ClusterEigenvalue> { row.of_clusters()?.get(i).copied() };
-    let eigenvalue = move |row: &Row| match row.of_each() {
-        Some(stability) => stability.eigenvalues.get(i).copied(),
-        None => of_cluster(row).map(|one| one.value),
-    };
-    let uncertainty = move |row: &Row| match row.of_each() {
-        Some(stability) => stability.uncertainty.get(i).copied(),
-        None => of_cluster(row).map(|one| one.uncertainty),
-    };
-    let place = i + 1;
-    let mut columns = vec![
-        Column::new(
-            format!("eigenvalue_{place}_re"),
-            Growth,
-            move |row: &Row| eigenvalue(row).map(|z| z.re).into(),
-        ),
-        Column::new(
-            format!("eigenvalue_{place}_im"),
-            Growth,
-            move |row: &Row| eigenvalue(row).map(|z| z.im).into(),
-        ),
-        Column::new(
-            format!("eigenvalue_uncertainty_{place}"),
-            Growth,
-            move |row: &Row| uncertainty(row).into(),
-        )
-        .not_in_table(),
-    ];
-    if by_clusters {
-        columns.extend([
+    let by_clusters = interfaces > ONE_BY_ONE;
+    let of_one = move |i: usize| {
+        let place = i + 1;
+        let at = move |row: &R, i: usize| of(row).get(i).map(|one| one.value);
+        let mut columns = Vec::from(Column::eigenvalue(i, Growth, at));
+        columns.push(
             Column::new(
-                format!("eigenvalue_{place}_multiplicity"),
-                Number,
-                move |row: &Row| {
-                    let count = of_cluster(row).map(|one| one.multiplicity);
-                    count.map_or(CellValue::Number(None), CellValue::from)
-                },
+                format!("eigenvalue_uncertainty_{place}"),
+                Growth,
+                move |row: &R| of(row).get(i).map(|one| one.uncertainty).into(),
             )
             .not_in_table(),
-            Column::new(
-                format!("eigenvalue_{place}_kind"),
-                Number,
-                move |row: &Row| of_cluster(row).map(|one| one.kind.name()).into(),
-            )
-            .not_in_table(),
-        ]);
-    }
-    for column in &mut columns {
-        column.in_table &= i == 0;
-    }
-    columns
+        );
+        if by_clusters {
+            let multiplicity = move |row: &R| {
+                let count = of(row).get(i).map(|one| one.multiplicity);
+                count.map_or(CellValue::Number(None), CellValue::from)
+            };
+            let kind = move |row: &R| of(row).get(i).map(|one| one.kind.name()).into();
+            columns.extend([
+                Column::new(
+                    format!("eigenvalue_{place}_multiplicity"),
+                    Number,
+                    multiplicity,
+                )
+                .not_in_table(),
+                Column::new(format!("eigenvalue_{place}_kind"), Number, kind).not_in_table(),
+            ]);
+        }
+        columns
+    };
+    let count = if by_clusters {
+        EIGENVALUES
+    } else {
+        interfaces + 1
+    };
+    (0..count).flat_map(of_one).collect()
 }

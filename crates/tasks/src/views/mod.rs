@@ -29,7 +29,7 @@ mod text;
 
 pub use bifurcation::{branch_columns, locus_columns, special_columns};
 pub use catalogue::{many_event_columns, participation_columns, picture_of_events};
-pub use clusters::{cluster_columns, staircase};
+pub use clusters::staircase;
 pub use diagram::{axis_label, branch_lines, branches, curves, parameters};
 pub use equilibria::equilibria_columns;
 pub use fit::{

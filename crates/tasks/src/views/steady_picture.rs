@@ -48,16 +48,13 @@ pub fn picture_of_equilibria(
     };
     let shown = |one: &ClassifiedEquilibrium| {
         let states = one.equilibrium.state().into_iter();
-        let eigenvalues: Vec<Complex<f64>> = match (one.of_each(), one.of_clusters()) {
-            (Some(stability), _) => stability.eigenvalues.clone(),
-            (None, Some(all)) => all.iter().map(|one| one.value).collect(),
-            (None, None) => Vec::new(),
-        };
+        let known = one.stability.iter();
+        let eigenvalues = known.flat_map(|known| &known.eigenvalues);
         Shown {
             at: units.outward(Quantity::Stress, one.equilibrium.stress.value),
             values: states.map(|x| units.outward(Quantity::State, x)).collect(),
-            eigenvalues: eigenvalues.into_iter().map(growth).collect(),
-            verdict: one.stability.as_ref().map(|stability| stability.verdict()),
+            eigenvalues: eigenvalues.map(|one| growth(one.value)).collect(),
+            verdict: one.stability.as_ref().map(|stability| stability.verdict),
         }
     };
     let kind = if system.interfaces > 2 {

@@ -17,19 +17,12 @@ pub fn text_equilibria_columns(model: &TextModel) -> Vec<Column<TextEquilibrium>
         columns.push(Column::new(format!("slip_rate_{rate}"), Number, v));
     }
     for i in 0..model.system.states().len() {
-        let value = move |row: &Row| row.stability.eigenvalues.get(i).copied();
         let place = i + 1;
+        let value = |row: &Row, i: usize| row.stability.eigenvalues.get(i).copied();
+        let [re, im] = Column::eigenvalue(i, Number, value);
         let mut of_one = [
-            Column::new(
-                format!("eigenvalue_{place}_re"),
-                Number,
-                move |row: &Row| value(row).map(|z| z.re).into(),
-            ),
-            Column::new(
-                format!("eigenvalue_{place}_im"),
-                Number,
-                move |row: &Row| value(row).map(|z| z.im).into(),
-            ),
+            re,
+            im,
             Column::new(
                 format!("eigenvalue_uncertainty_{place}"),
                 Number,
@@ -47,6 +40,10 @@ pub fn text_equilibria_columns(model: &TextModel) -> Vec<Column<TextEquilibrium>
             row.stability.verdict.name().into()
         }),
         Column::new("residual", Number, |row: &Row| row.residual.into()).not_in_table(),
+        Column::new("unstable", Number, |row: &Row| {
+            row.stability.unstable().into()
+        })
+        .not_in_table(),
     ]);
     columns
 }

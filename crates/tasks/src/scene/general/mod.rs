@@ -123,6 +123,9 @@ pub trait Subject: Described + Sync {
     /// The parameters that every row tells, held or not.
     fn always_told(&self) -> Vec<(&'static str, Quantity)>;
 
+    /// How many variables there are.
+    fn dimension(&self) -> usize;
+
     /// What rows tell of a state or an orbit: names and quantities.
     fn numbers(&self, kind: RowKind) -> Vec<(String, Quantity)>;
 

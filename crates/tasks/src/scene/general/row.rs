@@ -40,6 +40,10 @@ pub struct GeneralRow {
     pub period: Option<Uncertain>,
     /// The real parts of the leading eigenvalues, or ln |mu| of the leading multipliers.
     pub exponents: [Option<f64>; 2],
+    /// The eigenvalues of an equilibrium, largest real part first.
+    pub eigenvalues: Vec<Complex<f64>>,
+    /// How many eigenvalues of an equilibrium have positive real parts.
+    pub unstable: Option<usize>,
     /// Of interfaces in clusters what a split of each that can split grows by.
     pub within: Vec<f64>,
     /// The angle of the multipliers of a torus bifurcation, over pi.
@@ -85,10 +89,14 @@ impl GeneralRow {
         let square = oscillation(family, &point).map_or(1.0, |parts| {
             parts.map(|part| subject.length(&part).powi(2)).iter().sum()
         });
-        let exponents: Vec<f64> = match &point.solution {
+        let eigenvalues: Vec<Complex<f64>> = match &point.solution {
             GeneralSolution::Equilibrium { eigenvalues, .. } => {
-                eigenvalues.iter().map(|z| z.re / time).collect()
+                eigenvalues.iter().map(|z| z / time).collect()
             }
+            GeneralSolution::Orbit { .. } => Vec::new(),
+        };
+        let exponents: Vec<f64> = match &point.solution {
+            GeneralSolution::Equilibrium { .. } => eigenvalues.iter().map(|z| z.re).collect(),
             GeneralSolution::Orbit {
                 log_multipliers, ..
             } => log_multipliers.clone(),
@@ -111,6 +119,8 @@ impl GeneralRow {
                 .period
                 .map(|period| Uncertain::new(period.value * time, period.uncertainty * time)),
             exponents: [0, 1].map(|i| exponents.get(i).copied().filter(|x| x.is_finite())),
+            eigenvalues,
+            unstable: point.unstable(),
             within: point.within.iter().map(|one| one.ln_abs.value).collect(),
             angle_over_pi: point.angle_over_pi,
             crossing: point.crossing,
@@ -191,7 +201,24 @@ impl GeneralRow {
         let whole = if kind.curve { "curve" } else { "branch" };
         columns.push(Column::new(whole, Number, |row: &Row| row.number.into()));
         columns.extend(subject.has_equal_parts().then(Self::symmetry_column));
+        if !kind.orbits && !kind.curve {
+            columns.extend(Self::eigenvalue_columns(subject.dimension()));
+        }
         columns
+    }
+
+    /// Those of all eigenvalues of an equilibrium, and how many of them grow.
+    fn eigenvalue_columns(dimension: usize) -> Vec<Column<Self>> {
+        let of = |row: &Self, i: usize| {
+            let known = row.eigenvalues.get(i).copied();
+            known.filter(|z| z.re.is_finite() && z.im.is_finite())
+        };
+        let unstable = Column::new("unstable", Quantity::Number, |row: &Self| {
+            let count = row.unstable;
+            count.map_or(CellValue::Number(None), CellValue::Count)
+        });
+        let all = (0..dimension).flat_map(|i| Column::eigenvalue(i, Quantity::Growth, of));
+        all.chain([unstable]).map(Column::not_in_table).collect()
     }
 
     fn symmetry_column() -> Column<Self> {
@@ -274,6 +301,8 @@ impl GeneralRow {
             period: uncertain("period", Quantity::Time),
             // Not shown but in the line itself, which is kept as it stands.
             exponents: [None; 2],
+            eigenvalues: Vec::new(),
+            unstable: None,
             within: Vec::new(),
             angle_over_pi: number("angle_over_pi"),
             crossing: BranchCrossing::ALL

@@ -336,6 +336,10 @@ impl Subject for SlabSubject {
         names.map(|name| (name, quantity(name))).to_vec()
     }
 
+    fn dimension(&self) -> usize {
+        self.system.interfaces + 1
+    }
+
     fn numbers(&self, _: RowKind) -> Vec<(String, Quantity)> {
         use Quantity::{SlipRate, State, Stress};
         let all = [

@@ -258,6 +258,10 @@ impl Subject for TextSubject {
         }
     }
 
+    fn dimension(&self) -> usize {
+        self.model.system.states().len()
+    }
+
     fn numbers(&self, kind: RowKind) -> Vec<(String, Quantity)> {
         let states = self.model.system.states().iter();
         let named = |name: String| (name, Quantity::Number);

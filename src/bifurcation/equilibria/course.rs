@@ -1,27 +1,46 @@
 //! What lies along the equilibria of a share: points for rows, folds, Hopf points, wanted values of V_H.
 
-use super::special::{ShareHopf, fold, meeting};
+use super::hopf::ShareHopf;
+use super::stationary::{Fold, meeting, parting};
 use crate::bifurcation::{BranchRequest, Label, Special};
 use crate::equilibrium::{
     Bracket, EquilibriumCurve, FAST, MIDDLE, SLOW, Share, SteadyCurve, SteadyPoint, constant,
 };
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::friction::AnyLaw;
 use crate::number::{DoubleDouble, Interval, Real, Uncertain, log_ratio};
+use crate::orbit::InterfaceSystem;
 
 /// The longest step in the logarithm of the rate.
 const LONGEST: f64 = 0.1;
 /// The first one from an extremum, and how much larger each is than the one before.
 const SHORTEST: f64 = 1e-3;
 const GRADING: f64 = 1.3;
-/// One point of so many has a row.
-const THINNING: usize = 3;
+/// One point of so many has a row: of two interfaces, which have few branches, and of more.
+const THINNING: [usize; 2] = [2, 3];
+
+/// The steady curve, for V_H up to a largest one; of a single interface without branches, as it slides alike with itself on all of them.
+///
+/// # Errors
+/// [`Error::Input`] where an extremum is not certainly one.
+pub(super) fn steady_curve(slab: &InterfaceSystem, most: f64) -> Result<SteadyCurve<'_>> {
+    if slab.interfaces == 1 {
+        return Ok(SteadyCurve::whole(&slab.law));
+    }
+    SteadyCurve::new(&slab.law, 4.0 * most).ok_or_else(|| {
+        Error::Input("an extremum of the steady stress is not certainly one: what branches there are is not known".into())
+    })
+}
+
+fn thinning(interfaces: usize) -> usize {
+    THINNING[usize::from(interfaces > 2)]
+}
 
 /// A place along a share.
 #[derive(Debug, Clone)]
-pub(super) struct Station {
+pub(super) struct Station<'a> {
     pub share: Share,
-    pub point: SteadyPoint,
+    pub point: SteadyPoint<'a>,
     /// V_H, as it is told.
     pub driving: f64,
     /// Whether it has a row.
@@ -30,11 +49,11 @@ pub(super) struct Station {
     pub special: Option<Special>,
 }
 
-impl Station {
-    fn plain(share: &Share, point: &SteadyPoint) -> Self {
+impl<'a> Station<'a> {
+    fn plain(share: &Share, point: &SteadyPoint<'a>, driving: f64) -> Self {
         Station {
             share: *share,
-            driving: point.driving(share).value.to_f64(),
+            driving,
             point: point.clone(),
             shown: true,
             label: None,
@@ -43,12 +62,11 @@ impl Station {
     }
 
     /// A special point, at its V_H.
-    pub fn special(share: &Share, point: &SteadyPoint, special: Special) -> Self {
+    pub fn special(share: &Share, point: &SteadyPoint<'a>, special: Special) -> Self {
         Station {
-            driving: special.driving.value,
             label: Some(special.label),
-            special: Some(special),
-            ..Station::plain(share, point)
+            special: Some(special.clone()),
+            ..Station::plain(share, point, special.driving.value)
         }
     }
 }
@@ -56,7 +74,7 @@ impl Station {
 /// A curve of equilibria, whatever the share, at rates between which nothing is missed.
 pub(super) struct Course<'a> {
     pub curve: EquilibriumCurve<'a>,
-    pub points: Vec<SteadyPoint>,
+    pub points: Vec<SteadyPoint<'a>>,
 }
 
 impl<'a> Course<'a> {
@@ -100,24 +118,37 @@ impl<'a> Course<'a> {
 
     /// About how many rows a share has within a range of V_H.
     pub fn rows(&self, share: &Share, (from, to): (f64, f64)) -> usize {
-        let driving = |point: &SteadyPoint| point.driving(share).value.to_f64();
-        let inside = |point: &&SteadyPoint| (from..=to).contains(&driving(point));
-        self.points.iter().filter(inside).count() / THINNING
+        let inside = |point: &&SteadyPoint<'a>| (from..=to).contains(&point.driving_near(share));
+        self.points.iter().filter(inside).count() / thinning(share.iter().sum())
     }
 
     /// What lies along a share within a range of V_H, by the rate ascending; beside it nothing but where it is.
     ///
     /// # Errors
     /// [`crate::Error::NotConverged`] if a search fails.
-    pub fn stations(&self, share: &Share, request: &BranchRequest) -> Result<Vec<Station>> {
-        let mut all: Vec<Station> = (0..self.points.len())
-            .map(|i| Station {
-                shown: i % THINNING == 0,
-                ..Station::plain(share, &self.points[i])
-            })
-            .collect();
+    pub fn stations(&self, share: &Share, request: &BranchRequest) -> Result<Vec<Station<'a>>> {
+        let (low, high) = ends_of(request);
+        let thinning = thinning(share.iter().sum());
+        let plain = |(i, point): (usize, &SteadyPoint<'a>)| {
+            let near = point.driving_near(share);
+            let shown = i % thinning == 0;
+            // what has a row is as the rates in 31 digits have it
+            let driving = match shown && (0.5 * low..=2.0 * high).contains(&near) {
+                true => point.driving(share).value.to_f64(),
+                false => near,
+            };
+            Station {
+                shown,
+                ..Station::plain(share, point, driving)
+            }
+        };
+        let mut all: Vec<Station<'a>> = self.points.iter().enumerate().map(plain).collect();
         self.ends(share, request, &mut all);
-        all.extend(self.folds(share, request)?);
+        let folds = self.folds(share, (low, high))?.into_iter();
+        all.extend(folds.map(|fold| {
+            let special = Special::new(Label::Lp, fold.driving, exact_stiffness(request));
+            Station::special(share, &fold.point, special)
+        }));
         all.sort_by(|a, b| a.point.rate().total_cmp(&b.point.rate()));
         let wanted = self.wanted(&all, request)?;
         let hopf = self.hopf(share, request)?;
@@ -126,26 +157,29 @@ impl<'a> Course<'a> {
         Ok(all)
     }
 
-    /// The points at which the middle branch meets another one.
-    fn ends(&self, share: &Share, request: &BranchRequest, all: &mut [Station]) {
-        let last = all.len() - 1;
+    /// The branch points at which the middle branch meets another one.
+    fn ends(&self, share: &Share, request: &BranchRequest, all: &mut [Station<'a>]) {
+        let EquilibriumCurve::Shares(steady) = self.curve else {
+            return;
+        };
+        let (last, (low, high)) = (all.len() - 1, ends_of(request));
         for (i, branch) in [(0, SLOW), (last, FAST)] {
+            let together = share[branch] + share[MIDDLE];
+            all[i].shown = true;
+            if together < 2 || !(low..=high).contains(&all[i].driving) {
+                continue;
+            }
             if let Some((point, driving)) = meeting(&self.curve, share, branch) {
-                let together = share[branch] + share[MIDDLE];
-                all[i] = match together {
-                    0 | 1 => Station {
-                        driving: driving.value,
-                        ..Station::plain(share, &point)
-                    },
-                    _ => Station::special(share, &point, parting(driving, request, together)),
-                };
+                let at = [driving, exact_stiffness(request)];
+                let of_all = (together, share.iter().sum());
+                let special = parting(&steady, branch, at, of_all);
+                all[i] = Station::special(share, &point, special);
             }
         }
     }
 
     /// Neighbours between which a number changes its sign.
-    fn changes(&self, number: impl Fn(&SteadyPoint) -> f64) -> Vec<Bracket> {
-        let values: Vec<f64> = self.points.iter().map(&number).collect();
+    fn changes(&self, values: &[f64], number: impl Fn(&SteadyPoint<'a>) -> f64) -> Vec<Bracket> {
         let mut found = Vec::new();
         for (i, pair) in values.windows(2).enumerate() {
             let ends = [&self.points[i], &self.points[i + 1]].map(SteadyPoint::rate);
@@ -157,7 +191,10 @@ impl<'a> Course<'a> {
         for (i, three) in values.windows(3).enumerate() {
             let [a, b, c] = [three[0], three[1], three[2]];
             let dips = a * b > 0.0 && b * c > 0.0 && b.abs() < a.abs() && b.abs() < c.abs();
-            if dips && let Some(x) = self.beyond_zero(i, b.signum(), &number) {
+            if dips
+                && self.nears_zero(i, [a, b, c].map(f64::abs))
+                && let Some(x) = self.beyond_zero(i, b.signum(), &number)
+            {
                 let sign = b.signum();
                 found.push((self.points[i].rate(), x, sign));
                 found.push((x, self.points[i + 2].rate(), -sign));
@@ -166,12 +203,23 @@ impl<'a> Course<'a> {
         found
     }
 
+    /// Whether the parabola through three points comes much nearer to zero than the middle one.
+    fn nears_zero(&self, first: usize, [a, b, c]: [f64; 3]) -> bool {
+        /// So much nearer.
+        const NEARER: f64 = 0.5;
+        let [x, y, z] = [0, 1, 2].map(|i| self.points[first + i].rate().ln());
+        let (left, right) = ((b - a) / (y - x), (c - b) / (z - y));
+        let curvature = (right - left) / (z - x);
+        let slope = left + curvature * (y - x);
+        b - slope * slope / (4.0 * curvature) < NEARER * b
+    }
+
     /// A rate between two points with one between them at which a number has the other sign, by golden section.
     fn beyond_zero(
         &self,
         first: usize,
         sign: f64,
-        number: &impl Fn(&SteadyPoint) -> f64,
+        number: &impl Fn(&SteadyPoint<'a>) -> f64,
     ) -> Option<f64> {
         const STEPS: usize = 40;
         const GOLDEN: f64 = 0.618_033_988_749_894_9;
@@ -200,57 +248,86 @@ impl<'a> Course<'a> {
         None
     }
 
-    /// Points from one at which something holds towards one at which it does not, as close as it holds.
-    pub fn up_to(
+    /// What is at points from one at which there is something towards one at which there is nothing, as close as there is.
+    pub fn up_to<T>(
         &self,
-        inside: &SteadyPoint,
-        outside: &SteadyPoint,
-        holds: impl Fn(&SteadyPoint) -> bool,
-    ) -> Vec<SteadyPoint> {
+        inside: &SteadyPoint<'a>,
+        outside: &SteadyPoint<'a>,
+        there: impl Fn(SteadyPoint<'a>) -> Option<T>,
+    ) -> Vec<T> {
         const HALVINGS: usize = 40;
         let (mut near, mut far) = (inside.rate(), outside.rate());
         let mut found = Vec::new();
         for _ in 0..HALVINGS {
             let middle = 0.5 * near + 0.5 * far;
-            let point = self.curve.point(DoubleDouble::from(middle));
-            if holds(&point) {
-                near = middle;
-                found.push(point);
-            } else {
-                far = middle;
+            match there(self.curve.point(DoubleDouble::from(middle))) {
+                Some(one) => {
+                    near = middle;
+                    found.push(one);
+                }
+                None => far = middle,
             }
         }
         found
     }
 
-    /// Where V_H of a share has an extremum.
-    pub fn fold_brackets(&self, share: &Share) -> Vec<Bracket> {
-        self.changes(|point| point.driving(share).gradient[0].to_f64())
-    }
-
-    fn folds(&self, share: &Share, request: &BranchRequest) -> Result<Vec<Station>> {
-        let at = |bracket| {
-            let (point, driving) = fold(&self.curve, share, bracket)?;
-            let special = Special::new(Label::Lp, driving, exact_stiffness(request));
-            Ok(Station::special(share, &point, special))
+    /// The folds of a share within a range of V_H, by the rate ascending.
+    ///
+    /// # Errors
+    /// [`crate::Error::NotConverged`] if a search fails.
+    pub fn folds(&self, share: &Share, (low, high): (f64, f64)) -> Result<Vec<Fold<'a>>> {
+        let sign = |point: &SteadyPoint<'a>| point.slope_sign(share);
+        let values: Vec<f64> = self.points.iter().map(sign).collect();
+        let driving = |x: f64| self.curve.point(DoubleDouble::from(x)).driving_near(share);
+        // a largest V_H is no less than those beside it, a least one no more
+        let inside = |&(from, to, left): &Bracket| {
+            let [a, b] = [from, to].map(driving);
+            match left > 0.0 {
+                true => a.max(b) <= high,
+                false => a.min(b) >= low,
+            }
         };
-        self.fold_brackets(share).into_iter().map(at).collect()
+        let brackets = self.changes(&values, sign).into_iter().filter(inside);
+        let fold = |bracket| Fold::new(self.curve, share, bracket);
+        let mut found: Vec<Fold<'a>> = brackets.map(fold).collect::<Result<_>>()?;
+        found.retain(|fold| (low..=high).contains(&fold.driving.value));
+        Ok(found)
     }
 
-    fn hopf(&self, share: &Share, request: &BranchRequest) -> Result<Vec<Station>> {
-        let k = request.slab.loading.stiffness;
-        let determinant = |point: &SteadyPoint| point.oscillation(share).relative_determinant(k);
+    fn hopf(&self, share: &Share, request: &BranchRequest) -> Result<Vec<Station<'a>>> {
+        let (k, (low, high)) = (request.slab.loading.stiffness, ends_of(request));
+        let drivings: Vec<f64> = self
+            .points
+            .iter()
+            .map(|one| one.driving_near(share))
+            .collect();
+        let determinant = |point: &SteadyPoint<'a>| point.relative_determinant(share, k);
+        // beside the range nothing is looked at
+        let looked_at = |i: usize| {
+            let from = i.saturating_sub(2);
+            let near = drivings[from..(i + 3).min(drivings.len())].iter();
+            let least = near.clone().copied().fold(f64::INFINITY, f64::min);
+            least <= high && near.copied().fold(0.0, f64::max) >= low
+        };
+        let value = |(i, point)| match looked_at(i) {
+            true => determinant(point),
+            false => f64::NAN,
+        };
+        let values: Vec<f64> = self.points.iter().enumerate().map(value).collect();
         let mut found = Vec::new();
-        for bracket in self.changes(determinant) {
+        for bracket in self.changes(&values, determinant) {
             if let Some(hopf) = ShareHopf::at_stiffness(&self.curve, share, k, bracket)? {
-                found.push(Station::special(share, &hopf.point, hopf.special()));
+                let driving = hopf.place()[0];
+                if (low..=high).contains(&driving) {
+                    found.push(Station::special(share, &hopf.point, hopf.special()));
+                }
             }
         }
         Ok(found)
     }
 
     /// Where V_H has a value that is asked for, or that of an end of the range; between two of these stations it is monotonic.
-    fn wanted(&self, all: &[Station], request: &BranchRequest) -> Result<Vec<Station>> {
+    fn wanted(&self, all: &[Station<'a>], request: &BranchRequest) -> Result<Vec<Station<'a>>> {
         let (from, to) = request.range;
         let asked = request.at.iter().map(|&v| (v, Label::Uz));
         let ends = [from, to].into_iter().filter(|v| !request.at.contains(v));
@@ -277,14 +354,13 @@ impl<'a> Course<'a> {
     }
 }
 
-/// The branch point at which so many interfaces that slide alike may part.
-pub(super) fn parting(driving: Uncertain, request: &BranchRequest, together: usize) -> Special {
-    let mut special = Special::new(Label::Bp, driving, exact_stiffness(request));
-    special.note = Some(format!("{together} interfaces that slide alike may part"));
-    special
+/// The ends of the range of V_H, the smaller one first.
+fn ends_of(request: &BranchRequest) -> (f64, f64) {
+    let (from, to) = request.range;
+    (from.min(to), from.max(to))
 }
 
-fn exact_stiffness(request: &BranchRequest) -> Uncertain {
+pub(super) fn exact_stiffness(request: &BranchRequest) -> Uncertain {
     Uncertain::new(request.slab.loading.stiffness, 0.0)
 }
 
