@@ -9,9 +9,10 @@ FROM debian:bookworm-slim
 COPY --from=build /src/target/packages/twinslip_*.deb /tmp/twinslip.deb
 RUN dpkg --install /tmp/twinslip.deb \
     && rm /tmp/twinslip.deb \
-    && useradd --create-home twinslip \
+    && useradd --create-home --uid 1000 twinslip \
     && install --directory --owner=twinslip /data
-USER twinslip
+# By its number, which hosts that refuse images of root can check.
+USER 1000
 WORKDIR /data
 ENTRYPOINT ["twinslip"]
 CMD ["--help"]

@@ -48,6 +48,20 @@ def unbroken(text: str) -> str:
     return "".join(parts)
 
 
+# Up to this width a picture has one column, whose text can still be read on the screen of a phone.
+ONE_COLUMN = 460
+PICTURE = re.compile(r"^!\[[^\]]*\]\(([^)\s]+)\)$", re.MULTILINE)
+
+
+def width(picture: Path) -> int:
+    """The width for which a picture is drawn, in pixels; one in PNG has twice as many."""
+    data = picture.read_bytes()
+    if picture.suffix == ".png":
+        return int.from_bytes(data[16:20], "big") // 2
+    found = re.search(rb'<svg[^>]* width="(\d+)"', data)
+    return int(found[1]) if found else 0
+
+
 class Stage:
     def __init__(self, place: Path) -> None:
         self.place = place
@@ -64,8 +78,14 @@ class Stage:
             to = self.copy(file)
             return f"]({os.path.relpath(to, target.parent)}{hash_}{anchor})"
 
+        def scrolled(match: re.Match[str]) -> str:
+            """A wide picture in a box, which scrolls sideways on a narrow screen: made narrower its text would be too small."""
+            if width(source.parent / match[1]) <= ONE_COLUMN:
+                return match[0]
+            return f'<div class="wide-picture" tabindex="0">\n\n{match[0]}\n\n</div>'
+
         target.parent.mkdir(parents=True, exist_ok=True)
-        text = LINK.sub(changed, source.read_text())
+        text = LINK.sub(changed, PICTURE.sub(scrolled, source.read_text()))
         target.write_text(BLOCK.sub(folded, unbroken(text)))
 
     def copy(self, file: Path) -> Path:
