@@ -317,7 +317,11 @@ fn what_makes_no_branch_is_refused_in_one_sentence() {
     // What is no wrong input: there is nothing in this range.
     let ended = twinslip("branch orbits --system brusselator --along b --from 0.5 --to 1 -q");
     assert_eq!(ended.code, 1, "{}", ended.err);
-    assert!(ended.err.contains("no Hopf point is met"), "{}", ended.err);
+    assert!(
+        ended.err.contains("there is no Hopf point"),
+        "{}",
+        ended.err
+    );
 }
 
 #[test]

@@ -390,7 +390,7 @@ fn wrong_branches_are_refused() {
         ),
         (
             "branch orbits --stiffness 1 --driving 1",
-            "--driving can't be given with --along driving",
+            "--driving cannot be given with --along driving",
         ),
         (
             "branch orbits --along period --driving 1",
@@ -402,7 +402,7 @@ fn wrong_branches_are_refused() {
         ),
         (
             "branch equilibria --stiffness 0.14 --crosscheck",
-            "--crosscheck goes with orbits",
+            "--crosscheck applies only to orbits",
         ),
     ] {
         refused(arguments, sentence);
@@ -457,7 +457,10 @@ fn wrong_curves_are_refused() {
         ("locus hopf --stiffness-range 0,1", "stiffness-range is 0"),
         ("locus torus --at-stiffness 7", "must be in the range"),
         ("locus torus --at-driving x", "is not a number"),
-        ("locus hopf --crosscheck", "--crosscheck goes with orbits"),
+        (
+            "locus hopf --crosscheck",
+            "--crosscheck applies only to orbits",
+        ),
     ] {
         refused(arguments, sentence);
     }

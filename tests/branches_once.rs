@@ -164,7 +164,7 @@ fn orbits_begin_at_those_that_are_found_where_no_hopf_point_is_met() {
         assert!(
             ended
                 .err
-                .contains("begins here, at an orbit that was found"),
+                .contains("begins here, at an orbit found by a search"),
             "{}",
             ended.err
         );

@@ -356,10 +356,13 @@ fn what_makes_no_sense_is_refused_in_a_sentence() {
             "--interfaces 100",
             "max-points is 20000, but must be at least about",
         ),
-        ("--interfaces 3 --driving 1", "can't be given"),
+        ("--interfaces 3 --driving 1", "cannot be given"),
         ("--interfaces 3 --at 1e9", "in the range"),
         ("--interfaces 3 --from 2 --to 2", "two different ends"),
-        ("--interfaces 3 --crosscheck taylor", "goes with orbits"),
+        (
+            "--interfaces 3 --crosscheck taylor",
+            "applies only to orbits",
+        ),
     ] {
         refused(&format!("{flags} {more}"), words);
     }

@@ -388,7 +388,8 @@ fn rows_have_counts_and_kinds() {
     }
     let explained = twinslip("equilibria --interfaces 6 --driving 2000 --explain").err;
     assert!(
-        explained.contains("each share of the slow, middle and fast branch"),
+        explained
+            .contains("every partition of the interfaces among the slow, middle and fast branch"),
         "{explained}"
     );
 }
@@ -400,7 +401,7 @@ fn what_several_interfaces_do_not_have_is_refused() {
         refused(
             &model(&format!("--interfaces {interfaces}")),
             &format!(
-                "interfaces is {interfaces}, but must be between 1 and 600: of more the number of arrangements is no double"
+                "interfaces is {interfaces}, but must be between 1 and 600: the number of partitions of more interfaces is beyond the range of doubles"
             ),
         );
     }
@@ -418,7 +419,7 @@ fn what_several_interfaces_do_not_have_is_refused() {
     );
     refused(
         &model("--clusters 1,2"),
-        "all steady states are found, by clusters",
+        "the steady states of all clusters are found",
     );
 }
 

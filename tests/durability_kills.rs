@@ -252,7 +252,7 @@ fn an_interrupt_says_what_is_kept() {
         ),
         (
             format!("reproduce --only fig06 --out {}", place.display()),
-            "what was finished is in",
+            "finished parts are in",
         ),
         (
             format!("locus torus --step-limit 1e-3 -o {}", rows.display()),

@@ -311,7 +311,7 @@ fn a_record_without_a_response_is_told_as_such() {
     let ended = twinslip(&format!("fit {}", file.display()));
     assert_eq!(ended.code, 1, "{}", ended.err);
     assert!(
-        ended.err.contains("no response to them above its noise"),
+        ended.err.contains("no response above its noise"),
         "{}",
         ended.err
     );

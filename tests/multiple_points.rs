@@ -61,7 +61,7 @@ fn meet_at(made: &Value, (parameter, value): (&str, f64), multiplicity: u64, cou
         let off = number(point, &format!("/{parameter}/uncertainty"));
         assert!((at - value).abs() <= off && off < 1e-11, "{at} +- {off}");
         assert_eq!(point["multiplicity"], multiplicity);
-        let note = format!("{multiplicity} eigenvalues are 0; branches that begin here: {count}");
+        let note = format!("{multiplicity} zero eigenvalues; branches that begin here: {count}");
         assert_eq!(point["note"], note);
     }
     for label in ["MX", "LP", "HB"] {

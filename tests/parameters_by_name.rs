@@ -55,7 +55,10 @@ fn what_cannot_be_set_is_refused_in_one_sentence() {
     ] {
         refused_in_one_line(&format!("{model} --set {set}"), sentence);
     }
-    refused_in_one_line("locus hopf --set stiffness=1", "varies along a curve");
+    refused_in_one_line(
+        "locus hopf --set stiffness=1",
+        "is a free parameter of a curve",
+    );
     refused_in_one_line(
         "sweep --driving 1:2:2 --stiffness 1:2:2 --set driving=1",
         "the grid of this command sets it",

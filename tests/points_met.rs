@@ -159,7 +159,7 @@ fn a_search_for_a_stiff_orbit_ends() {
     let ended = command::twinslip(&asked);
     assert_eq!(ended.code, 1, "{}", ended.err);
     assert!(
-        ended.err.contains("settles on no periodic orbit"),
+        ended.err.contains("does not converge to a periodic orbit"),
         "{}",
         ended.err
     );

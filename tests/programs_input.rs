@@ -182,7 +182,7 @@ fn the_plan_and_the_picture_tell_of_changes() {
     let scene = "integrate --driving 10 --stiffness 0.14 --until 12 --program 2:0,3-5:4";
     let told = twinslip(&format!("{scene} --explain --final-only"));
     assert!(
-        told.err.contains("2 changes, at each of which the integrator starts anew; along ramps V_H is a variable more"),
+        told.err.contains("2 changes, at each of which the integrator restarts; along ramps V_H is an additional variable"),
         "{}",
         told.err
     );
@@ -203,7 +203,8 @@ fn the_bound_on_steps_is_that_of_the_whole_run() {
     );
     assert_eq!(told.code, 1, "{}", told.err);
     assert!(
-        told.err.contains("60 steps were used up at t = "),
+        told.err
+            .contains("the limit of 60 steps was reached at t = "),
         "{}",
         told.err
     );

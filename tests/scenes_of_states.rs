@@ -212,7 +212,7 @@ fn what_is_kept_in_files_speaks_of_flags_too() {
     let object: Value = serde_json::from_str(&section.out).expect("JSON");
     let note = object["result"]["note"].as_str().expect("a reason");
     assert!(
-        note.contains("the exponents (--lyapunov) may tell"),
+        note.contains("the exponents (--lyapunov) may decide"),
         "{note}"
     );
 }

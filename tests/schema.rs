@@ -240,7 +240,11 @@ fn orbit() {
 #[test]
 fn an_orbit_that_is_none_fails_and_bad_input_is_refused() {
     for (arguments, code, said) in [
-        ("orbit --driving 1000 --stiffness 0.14", 1, "comes to rest"),
+        (
+            "orbit --driving 1000 --stiffness 0.14",
+            1,
+            "converges to an equilibrium",
+        ),
         ("orbit --driving 1", 2, "--stiffness"),
         (
             "orbit --driving 1 --stiffness 0.14 --symmetry odd",

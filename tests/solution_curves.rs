@@ -192,7 +192,7 @@ fn every_end_is_told_in_words() {
     assert!(continuation.now <= 2.0 && continuation.now > 2.0 - 5e-6);
     assert!(*length < 1e-5 && *because == Some(Error::Input("behind the wall".into())));
     assert!(continuation.curve.renewed > 0);
-    assert!(end.to_string().contains("finds no next point"), "{end}");
+    assert!(end.to_string().contains("finds no further point"), "{end}");
     // Where points are found, but no step is short enough for their directions.
     let end = Stop::StepTooSmall {
         length: 1e-9,

@@ -93,7 +93,7 @@ fn runs_that_a_symmetry_holds_are_let_go() {
         assert!(number(&found[0], "x_max").abs() < 1e-6);
         assert!((number(&found[1], "x_max").abs() - 24_f64.sqrt()).abs() < 1e-9);
         assert!(found[0]["note"].is_empty());
-        assert!(found[1]["note"].contains("held by a symmetry"));
+        assert!(found[1]["note"].contains("stayed on an unstable symmetric"));
     }
 }
 
@@ -382,7 +382,7 @@ fn what_cannot_vary_is_refused_in_one_sentence() {
         ),
         (
             "--interfaces 1 --driving 0.1 --stiffness 0.2 --plot map.svg",
-            "here none varies",
+            "here there is none",
         ),
         (
             "--driving 0.1 --grid healing_time=1:2:2",

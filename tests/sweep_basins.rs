@@ -222,7 +222,7 @@ fn what_is_no_basin_is_refused_in_one_sentence() {
     for (arguments, sentence) in [
         (
             "--system lorenz --basin --state-1 x=0:1:2 --state-2 y=0:1:2 --grid r=1:2:2",
-            "with --basin nothing but starts varies; give r a single value",
+            "with --basin only the starts vary; give r a single value",
         ),
         (
             "--system lorenz --basin --state-1 x=0:1:2 --state-2 0:1:2",

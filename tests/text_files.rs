@@ -148,7 +148,7 @@ fn mistakes_are_told_by_line_and_column() {
         ),
         (
             changed("a = 0.2", "a = \"0.2\""),
-            "4:5: a number must stand here, not string",
+            "4:5: a number is expected here, not string",
         ),
         (
             changed("a = 0.2", "a = nan"),
@@ -224,20 +224,20 @@ fn depth_and_size_are_bounded() {
     let with = |formula: &str| GOOD.replacen("x + a*y", formula, 1);
     let nested = |n: usize| format!("{}x{}", "(".repeat(n), ")".repeat(n));
     assert_eq!(run_of(&written(&place, with(&nested(60)))).0, 0);
-    refused(with(&nested(70)), "stand more than 64 deep in each other");
-    refused(with(&nested(1900)), "stand more than 64 deep in each other");
+    refused(with(&nested(70)), "are nested more than 64 deep");
+    refused(with(&nested(1900)), "are nested more than 64 deep");
     refused(with(&nested(20_000)), "at most 4000 are allowed");
     refused(
         with(&format!("{}x", "-".repeat(70))),
-        "stand more than 64 deep in each other",
+        "are nested more than 64 deep",
     );
     refused(
         with(&format!("x{}", "^x".repeat(70))),
-        "stand more than 64 deep in each other",
+        "are nested more than 64 deep",
     );
     refused(
         with(&format!("{}x", "sin(".repeat(900))),
-        "stand more than 64 deep in each other",
+        "are nested more than 64 deep",
     );
     let long = vec!["x"; 1900].join("+");
     assert_eq!(run_of(&written(&place, with(&long))).0, 0);

@@ -387,7 +387,7 @@ fn other_commands_refuse_time_in_one_sentence() {
     for command in ["law", "integrate --driving 1 --stiffness 1 --until 1"] {
         refused_in_one_line(
             &format!("{command} --law {path}"),
-            ":1:28: \"t\" is time, and a law is the same at all times",
+            ":1:28: \"t\" is time, on which a law cannot depend",
         );
     }
 }

@@ -151,7 +151,7 @@ def test_weights_and_bounds_are_heeded() -> None:
     with pytest.warns(twinslip.UndecidedWarning):
         bound = slider.fit(data, bounds={"slip_length": (8e-6, 1e-4)}, intervals="linear")
     assert bound["slip_length"].value == pytest.approx(8e-6, rel=1e-9)
-    assert any("stands at its bound" in one for one in bound.undecided)
+    assert any("is at its bound" in one for one in bound.undecided)
 
 
 def test_a_fit_goes_on_into_the_law(tmp_path: Path) -> None:

@@ -42,19 +42,18 @@ impl fmt::Display for Stop {
             Stop::RangeEnd => write!(f, "the range ends"),
             Stop::Ended(_) => write!(f, "the curve ends"),
             Stop::Closed => write!(f, "the curve is closed"),
-            Stop::MaxPoints(most) => write!(f, "the bound of {most} points is used up"),
+            Stop::MaxPoints(most) => write!(f, "the limit of {most} points was reached"),
             Stop::Observer => write!(f, "no more was asked for"),
             Stop::StepTooSmall {
                 length,
                 because: None,
             } => write!(
                 f,
-                "Newton's method finds next points, but the direction of the curve is another at each, down to steps of {length:.1e}: it is lost in what \
-                 the points are off"
+                "Newton's method converges, but the direction of the curve changes at every point, down to steps of {length:.1e}: it is lost in the error of the points"
             ),
             Stop::StepTooSmall { length, .. } => write!(
                 f,
-                "Newton's method finds no next point, down to steps of {length:.1e}"
+                "Newton's method finds no further point, down to steps of {length:.1e}"
             ),
             Stop::NoProgress {
                 steps,
@@ -62,7 +61,7 @@ impl fmt::Display for Stop {
                 travelled,
             } => write!(
                 f,
-                "no progress: the last {steps} steps are {length:.1e} long together, the way before {travelled:.1e}"
+                "no progress: the last {steps} steps together have length {length:.1e}, the path before them {travelled:.1e}"
             ),
             Stop::Failed(why) => write!(f, "{why}"),
         }

@@ -206,8 +206,7 @@ fn best_start<const N: usize>(
         // What is in the way of the first says most.
         for start in starts {
             thin.friction(&thin.variables(start)).map_err(|error| {
-                let advice = "the values that the steps of the record suggest are beyond the law's range, as where its friction shows no \
-                              response to them above its noise: give values to start from, or another record";
+                let advice = "the starting values that the steps of the record suggest are outside the law's range, as where the friction shows no response above its noise: give starting values, or another record";
                 error.advising(advice)
             })?;
         }

@@ -69,17 +69,17 @@ pub fn undecided<const N: usize>(
         let gone = gone.fold(0.0, |most: f64, x| most.max(x.abs()));
         let is_length = one.name.starts_with("slip_length");
         let why = if !one.uncertainty.is_finite() {
-            "the friction here does not show it, or not by itself"
+            "the friction does not depend on it, or not on it alone"
         } else if is_length && one.value > gone {
             "it is longer than the load point moves"
         } else if variable <= low || variable >= high {
-            "it stands at its bound"
+            "it is at its bound"
         } else if one.interval.0 <= zero && one.interval.1.is_infinite() {
-            "its 95 % interval has no ends"
+            "its 95 % interval is unbounded"
         } else if one.interval.1.is_infinite() {
-            "its 95 % interval has no upper end"
+            "its 95 % interval has no upper bound"
         } else if one.interval.0 <= zero {
-            "its 95 % interval has no lower end"
+            "its 95 % interval has no lower bound"
         } else if is_wide(one) {
             "its standard error is larger than itself"
         } else {
@@ -89,7 +89,7 @@ pub fn undecided<const N: usize>(
         let partner = partner(correlation, i).filter(|(_, rho)| rho.abs() > 0.9);
         let with = partner.map_or(String::new(), |(j, rho)| {
             format!(
-                ", and data like these know it together with {} (correlation {rho:.4})",
+                ", and these data determine it only together with {} (correlation {rho:.4})",
                 parameters[j].name
             )
         });
@@ -100,7 +100,7 @@ pub fn undecided<const N: usize>(
             let rho = correlation[(i, j)];
             if rho.abs() > INSEPARABLE && !told[i] && !told[j] {
                 sentences.push(format!(
-                    "{} and {} are determined in one combination alone (correlation {rho:.5}): fix one of them",
+                    "only one combination of {} and {} is determined (correlation {rho:.5}): fix one of them",
                     parameters[j].name, parameters[i].name
                 ));
             }

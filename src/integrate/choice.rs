@@ -81,7 +81,7 @@ impl Choice {
             #[cfg(feature = "sundials")]
             "cvode-adams" => Ok(Choice::Cvode(sundials::MultistepMethod::Adams)),
             _ if CVODE.contains(&name) => Err(Error::Input(format!(
-                "method {name} needs SUNDIALS, which this build is without; choose one of {}",
+                "method {name} needs SUNDIALS, and this build has none; choose one of {}",
                 Choice::names().join(", ")
             ))),
             _ => RosenbrockMethod::named(name)
@@ -156,13 +156,13 @@ impl Choice {
     pub fn reason(self) -> &'static str {
         match self {
             Choice::Auto => {
-                "taylor, the fastest along stick-slip cycles, and rodas5p, or rodas4 above 1e-5, for as long as strong damping would hold its steps short"
+                "taylor, the fastest along stick-slip cycles, and rodas5p, or rodas4 above 1e-5, while strong damping would limit its steps"
             }
             Choice::Taylor => {
                 "power series of order 12 to 18: by far the fastest along stick-slip cycles, slow where damping is strong"
             }
             Choice::Rosenbrock(RosenbrockMethod::Rodas5P) => {
-                "order 5, one factorisation a step and no iteration, stable on stiff scenes"
+                "order 5, one factorisation per step and no iteration, stable on stiff problems"
             }
             Choice::Rosenbrock(RosenbrockMethod::Rodas4) => {
                 "order 4, six stages: cheaper steps than rodas5p"
@@ -171,15 +171,15 @@ impl Choice {
                 "order 2, the pair of ode23s, which the paper used: slow at tight tolerances"
             }
             Choice::Radau => {
-                "order 9 or 13: the fewest steps on stiff scenes at tight tolerances, each by Newton's method"
+                "order 9 or 13: the fewest steps on stiff problems at tight tolerances, each solved by Newton's method"
             }
             #[cfg(feature = "sundials")]
             Choice::Cvode(sundials::MultistepMethod::Bdf) => {
-                "orders 1 to 5, the reference of the field: slower here at equal error"
+                "orders 1 to 5, a standard reference method: slower here at equal error"
             }
             #[cfg(feature = "sundials")]
             Choice::Cvode(sundials::MultistepMethod::Adams) => {
-                "orders 1 to 12: good along stick-slip cycles, slow on stiff scenes"
+                "orders 1 to 12: good along stick-slip cycles, slow on stiff problems"
             }
         }
     }

@@ -223,13 +223,13 @@ fn search(
 pub(super) fn no_orbit_met(guesses: Guesses<'_>, used_up: bool) -> Error {
     if used_up {
         return no_orbit(
-            format!("no periodic orbit was met in {SEARCH} steps, as many as a search may take"),
+            format!("no periodic orbit was found in {SEARCH} steps, the limit of a search"),
             "give a `start` on the orbit and its `period_guess`, or other `driving` and `stiffness`",
         );
     }
     guesses.otherwise.unwrap_or_else(|| {
         no_orbit(
-            "no periodic orbit of this symmetry was met".into(),
+            "no periodic orbit of this symmetry was found".into(),
             "give a `start` near it, or other `driving` and `stiffness`",
         )
     })

@@ -70,7 +70,7 @@ fn find_by(
     if guesses.closed.is_empty() {
         return Err(guesses.otherwise.unwrap_or_else(|| {
             no_orbit(
-                "no periodic orbit was met".into(),
+                "no periodic orbit was found".into(),
                 "give a `start` near it and a `period_guess`, or other parameters",
             )
         }));
@@ -128,8 +128,8 @@ fn rough_period(tracer: &mut Tracer, field: &AnyField<'_>, start: &Vector) -> Re
     let level = 0.5 * (range.0 + range.1);
     if !level.is_finite() || elapsed >= FOREVER {
         return Err(no_orbit(
-            "the run comes to rest at an equilibrium".into(),
-            "give a `start` from which it does not, or other parameters",
+            "the run converges to an equilibrium".into(),
+            "give another `start`, or other parameters",
         ));
     }
     let found = passages(tracer, field, &end, elapsed, level, usize::MAX)?.found;

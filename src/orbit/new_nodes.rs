@@ -196,5 +196,7 @@ fn displacement(along: &[TangentVector], node: usize) -> f64 {
 }
 
 pub(super) fn no_nodes() -> Stop {
-    Stop::Failed("the orbit can't be cut into arcs anew: the integration along it fails".into())
+    Stop::Failed(
+        "new shooting nodes cannot be placed: the integration along the orbit fails".into(),
+    )
 }

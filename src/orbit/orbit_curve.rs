@@ -278,7 +278,7 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
     fn failed(&mut self, here: &DirectedPoint, again: bool) -> Result<Option<DirectedPoint>, Stop> {
         if let Some(steps) = self.corrector.tracer.used_up() {
             return Err(Stop::Failed(format!(
-                "the bound of {steps} steps of the integrator is used up"
+                "the limit of {steps} steps of the integrator was reached"
             )));
         }
         if again {

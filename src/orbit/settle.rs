@@ -116,8 +116,8 @@ pub(super) fn settle(
                 continue;
             }
             return Err(no_orbit(
-                "the run comes to rest at an equilibrium".into(),
-                "give a `start` from which it does not, or other parameters",
+                "the run converges to an equilibrium".into(),
+                "give another `start`, or other parameters",
             ));
         }
         let level = 0.5 * (low + high);
@@ -148,7 +148,7 @@ pub(super) fn settle(
         }
     }
     Err(no_orbit(
-        "the run settles on no periodic orbit".into(),
-        "look at it with `section`, or give a `start` near the orbit",
+        "the run does not converge to a periodic orbit".into(),
+        "use `section` to see what it does, or give a `start` near the orbit",
     ))
 }

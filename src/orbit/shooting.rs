@@ -159,7 +159,7 @@ fn close_alone(tracer: &mut Tracer, field: &AnyField<'_>, guess: ShootingNodes) 
         if shooting.extent() < SHRUNK {
             return Err(no_orbit(
                 format!(
-                    "Newton's method shrank the orbit to an equilibrium, to {:e} of its size",
+                    "Newton's method converged to an equilibrium: the orbit shrank to {:e} of its size",
                     shooting.extent()
                 ),
                 "give a `start` farther from the equilibrium, or a `period_guess`",

@@ -146,7 +146,7 @@ pub fn spectrum_watched(
         return Err(Error::parameter(
             "returns",
             record.returns.len(),
-            "at least 60 for exponents, which are means with an uncertainty",
+            "at least 60 for exponents",
         ));
     }
     for point in record.returns.iter().chain(&record.waypoints) {

@@ -116,12 +116,12 @@ pub fn verdict(
     }
     if field.dimension() < 3 {
         return Ok(RegimeVerdict::undecided(
-            "the returns have not closed in on a periodic point, and in the plane there is nothing else; skip more, or lower `rtol` and `atol`",
+            "the returns have not converged to a periodic point, the only attractor of a plane system with returns; skip more, or lower `rtol` and `atol`",
         ));
     }
     if returns.len() < FEWEST_RETURNS {
         return Ok(RegimeVerdict::undecided(
-            "fewer than 200 returns that do not close in on a periodic point; record more, or skip more",
+            "fewer than 200 returns, which have not converged to a periodic point; record more, or skip more",
         ));
     }
     Ok(aperiodic(surface, returns, record.accuracy, exponents))
@@ -156,7 +156,7 @@ fn wandering(
     if disorder < REGULAR {
         if repeats(points, accuracy) {
             return RegimeVerdict::undecided(
-                "the returns repeat; a long period, or one that drowns in the error of the run, cannot be told from a torus: lower `rtol`",
+                "the returns repeat, but a long period, or one hidden by the error of the run, cannot be distinguished from a torus: lower `rtol`",
             );
         }
         let curve = invariant_curve(points);
@@ -167,13 +167,13 @@ fn wandering(
         let surely = exponents.map(|x| x.values.len() > 1 && x.values[..2].iter().all(known));
         return match (two_vanish, curve) {
             (Some(true), None) if surely == Some(false) => RegimeVerdict::undecided(
-                "the returns look quasi-periodic on no simple curve, and exponents that may vanish are not known well enough; record more",
+                "the returns look quasi-periodic but lie on no simple curve, and the exponents that may vanish are not accurate enough; record more",
             ),
             (Some(false), _) => RegimeVerdict::undecided(
                 "the returns look quasi-periodic but no second exponent vanishes; record more",
             ),
             (None, None) => RegimeVerdict::undecided(
-                "the returns look quasi-periodic on no simple curve; the exponents (`lyapunov`) may tell",
+                "the returns look quasi-periodic but lie on no simple curve; the exponents (`lyapunov`) may decide",
             ),
             (Some(true), _) | (None, Some(_)) => RegimeVerdict {
                 curve,
@@ -183,7 +183,7 @@ fn wandering(
     }
     let Some(exponents) = exponents else {
         return RegimeVerdict::undecided(
-            "the returns are neither periodic nor quasi-periodic; the exponents (`lyapunov`) may tell, or skip more",
+            "the returns are neither periodic nor quasi-periodic; the exponents (`lyapunov`) may decide, or skip more",
         );
     };
     if exponents.converged && exponents.values.first().is_some_and(positive) && disorder > IRREGULAR
@@ -191,7 +191,7 @@ fn wandering(
         return RegimeVerdict::of(Regime::Chaotic);
     }
     RegimeVerdict::undecided(
-        "no exponent is positive beyond its interval, and the returns have not settled; skip and record more",
+        "no exponent is certainly positive, and the returns have not converged; skip and record more",
     )
 }
 

@@ -31,12 +31,12 @@ pub(super) fn wandering(judge: &mut Judge, run: &SweepRun) -> Result<Settled, Un
     }
     let half = &run.returns()[n / 2..];
     if half.len() < FEWEST_RETURNS / 2 {
-        return Err("too few returns since it was let go from an unstable state or orbit");
+        return Err("too few returns since it was perturbed off an unstable state or orbit");
     }
     let plane = run.field.dimension() < 3;
     if plane || (run.equal_parts && half.iter().all(|at| alike(&at.state))) {
         return Err(
-            "its motion is plane, and so neither a torus nor chaos, and closes in on nothing yet; raise `max_returns`",
+            "its plane motion cannot be a torus or chaos, and has not converged yet; raise `max_returns`",
         );
     }
     let seen = aperiodic(&run.surface, half, rtol, None);
@@ -59,7 +59,7 @@ pub(super) fn wandering(judge: &mut Judge, run: &SweepRun) -> Result<Settled, Un
         return match chaos(judge, run) {
             Some(told) => told,
             None if last || run.lane.is_none() => with_tangents(run, max_steps),
-            None => Err("runs beside it take another way"),
+            None => Err("nearby runs behave differently"),
         };
     }
     if disorder < REGULAR {
@@ -90,7 +90,7 @@ fn chaos(judge: &mut Judge, run: &SweepRun) -> Option<Result<Settled, Undecided>
             return Some(Ok(told));
         }
         if count == settled || count == *FOR_EXPONENTS.end() {
-            return Some(Err(made.why.unwrap_or("its returns do not tell")));
+            return Some(Err(made.why.unwrap_or("its returns do not decide")));
         }
         count *= 2;
     }
@@ -115,7 +115,7 @@ fn with_tangents(run: &SweepRun, max_steps: usize) -> Result<Settled, Undecided>
     let known = Some(found.known());
     let made = aperiodic(surface, &recorded.returns, recorded.accuracy, known);
     if !matches!(made.regime, Regime::Torus | Regime::Chaotic) {
-        return Err(made.why.unwrap_or("its returns do not tell"));
+        return Err(made.why.unwrap_or("its returns do not decide"));
     }
     let mut told = told(run, made.regime);
     if let Some(range) = &mut told.row.range {

@@ -110,7 +110,7 @@ impl Judge {
         if run.recorder.steps >= self.settings.max_steps {
             return Some(undecided(
                 run,
-                "its steps are used up; raise `max_steps`".into(),
+                "the limit of steps was reached; raise `max_steps`".into(),
             ));
         }
         // The rounding of an equilibrium on the section returns for ever.
@@ -295,7 +295,7 @@ fn symmetry(unlike: f64) -> Symmetry {
 /// A row of which the regime is known.
 pub(super) fn begun(run: &SweepRun, regime: Regime) -> Settled {
     let note = (run.pushes > 0)
-        .then(|| "held by a symmetry or its start where that is unstable, it was let go by 0.001 of its size".into());
+        .then(|| "it stayed on an unstable symmetric or initial state; it was perturbed by 0.001 of its size".into());
     Settled {
         row: SweepRow {
             regime,

@@ -213,7 +213,7 @@ impl SweepSettings {
             Loading::new(loading.driving, loading.stiffness)?;
             if self.follow || self.starts != 1 {
                 return Err(Error::Input(
-                    "a basin has one start at each point and none to follow; leave out `starts` and `follow`".into(),
+                    "a basin has one start at each point, and points do not follow one another; leave out `starts` and `follow`".into(),
                 ));
             }
         }

@@ -85,7 +85,7 @@ pub fn run(
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads.unwrap_or_else(cores).min(all).max(1))
         .build()
-        .map_err(|error| Error::Input(format!("no threads to compute with: {error}")))?;
+        .map_err(|error| Error::Input(format!("cannot start threads: {error}")))?;
     let threads = pool.current_num_threads();
     let mut chunks = chunks(settings, all, threads).enumerate().fuse().peekable();
     // One for each thread that is at work at the same time.

@@ -309,7 +309,7 @@ impl SweepRun {
         self.growing = Growing { size, windows };
         if windows >= GROWING_WINDOWS && self.hopeless.is_none() {
             self.hopeless = Some(format!(
-                "it goes on growing without turning: a state has come to {:.1e} at t = {:.6e}",
+                "it keeps growing: a state has reached {:.1e} at t = {:.6e}",
                 self.units.outward(&self.state).amax(),
                 self.time * self.units.time
             ));

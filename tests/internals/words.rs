@@ -11,7 +11,7 @@ fn an_option_is_told_as_its_flag() {
             "--start 1,2 and --period-guess",
         ),
         (
-            "look at it with `section`, or give a `start`",
+            "use `section` to see what it does, or give a `start`",
             "look at it with `section`, or give a --start",
         ),
         ("one ` alone, then `rtol", "one ` alone, then `rtol"),

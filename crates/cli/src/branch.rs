@@ -29,7 +29,7 @@ pub fn run(options: &BranchOptions, call: &Call) -> Result<Ending> {
     let plan = BranchPlan::new(options)?;
     let branches = SlabCurves {
         whole: BRANCHES,
-        nothing: "no branch of orbits comes into the range: none begins at a Hopf point along the parameter; `orbit` at a value within the range looks for others",
+        nothing: "no branch of orbits enters the range: none begins at a Hopf point along the parameter; `orbit` at a value in the range searches for others",
         system: &plan.system,
         slab: &plan.request.slab,
         second: plan.following.second,

@@ -69,7 +69,7 @@ impl CheckpointFile {
         let bytes = fs::read(&self.path).map_err(|error| self.wrong("read", error))?;
         let damaged = || {
             let what =
-                "it is no checkpoint of this version, or is damaged; delete it to begin anew";
+                "it is no checkpoint of this version, or is damaged; delete it to start again";
             self.wrong("read", what)
         };
         let (rest, sum) = bytes.split_last_chunk::<4>().ok_or_else(damaged)?;
@@ -111,7 +111,7 @@ impl CheckpointFile {
             let rows = self.rows.display();
             return Err(self.wrong(
                 "use",
-                format!("{rows} has lost rows; delete both to begin anew"),
+                format!("{rows} has lost rows; delete both to start again"),
             ));
         }
         let state = Saved {

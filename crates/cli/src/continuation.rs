@@ -463,7 +463,7 @@ impl<'a, R: CurveRow> ContinuationOut<'a, R> {
         if let Some(first) = self.rows.iter().find(|row| row.undecided()) {
             let count = self.rows.iter().filter(|row| row.undecided()).count();
             return self.report.undecided(format_args!(
-                "the stability at {}, the first one at {}, as a multiplier or an eigenvalue is neutral within its error; another `step_limit` leads by",
+                "the stability at {}, the first one at {}, as a multiplier or an eigenvalue is neutral within its error; try another `step_limit`",
                 several(count, "point", "points"),
                 first.place(&self.task.names, units)
             ));

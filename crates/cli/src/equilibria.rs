@@ -42,10 +42,10 @@ fn plan(options: &EquilibriaOptions, call: &Call) -> Result<Ending> {
     let ending = write(&report, &plan, &found)?;
     Ok(match (ending, found.undecided()) {
         (Ending::Done, _) if !found.complete => report.undecided(
-            "the number of steady states, as V_H is within rounding of a bifurcation, or a slip rate is no number that doubles have; another `driving` decides",
+            "the number of steady states, as V_H is within rounding of a bifurcation, or a slip rate is beyond the range of doubles; try another `driving`",
         ),
         (Ending::Done, 1..) => report.undecided(format_args!(
-            "the stability of {}, as an eigenvalue is within its error of the imaginary axis; another `driving` or `stiffness` decides",
+            "the stability of {}, as an eigenvalue is within its error of the imaginary axis; try another `driving` or `stiffness`",
             several(found.undecided(), "steady state", "steady states")
         )),
         (ending, _) => ending,

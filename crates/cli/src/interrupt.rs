@@ -34,7 +34,7 @@ pub fn listen() {
         }
         if HOLDS.load(Ordering::Relaxed) {
             say(
-                "interrupted; what was found is written as soon as the step at hand is done; Ctrl-C again ends without it",
+                "interrupted; results so far are written when the current step is done; Ctrl-C again quits without them",
             );
         } else {
             leave();

@@ -22,7 +22,7 @@ pub fn run(options: &EquilibriaOptions, call: &Call) -> Result<Ending> {
     let ending = write(&report, &plan, &found)?;
     Ok(match ending {
         Ending::Done if found.undecided() => report.undecided(
-            "the stability, as an eigenvalue is within rounding of the imaginary axis; another `driving` or `stiffness` decides",
+            "the stability, as an eigenvalue is within rounding of the imaginary axis; try another `driving` or `stiffness`",
         ),
         ending => ending,
     })
@@ -45,7 +45,7 @@ fn write(
     }
     let stability = found.stability.map(|stability| {
         let unstable = stability.unstable.map_or(String::new(), |unstable| {
-            format!(", {unstable} eigenvalues that grow")
+            format!(", {unstable} unstable eigenvalues")
         });
         format!(": {}{unstable}", stability.verdict.name())
     });

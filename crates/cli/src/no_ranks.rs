@@ -20,7 +20,7 @@ impl Joined {
             .any(several)
         {
             return Err(Error::Input(
-                "mpirun has started several processes, but this build knows nothing of MPI; build it with --features mpi"
+                "mpirun has started several processes, but this build has no MPI; build it with --features mpi"
                     .into(),
             ));
         }

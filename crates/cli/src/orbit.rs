@@ -44,7 +44,7 @@ pub fn run(options: &OrbitOptions, call: &Call) -> Result<Ending> {
         Err(error) => {
             let why = match error {
                 Error::TooManySteps { limit, .. } if options.crosscheck.is_none() => format!(
-                    "the crosscheck by {second} was left out, as it takes longer than the orbit itself: more than {} steps; `crosscheck` {second} does it all the same",
+                    "the crosscheck by {second} was skipped, as it takes longer than the orbit itself: more than {} steps; `crosscheck` {second} asks for it all the same",
                     count(limit)
                 ),
                 error => format!("the crosscheck by {second} failed: {error}"),
@@ -61,7 +61,7 @@ pub fn run(options: &OrbitOptions, call: &Call) -> Result<Ending> {
     report.say(summary(&orbit, checked.as_ref(), plan.system.units()));
     Ok(match ending {
         Ending::Done if orbit.verdict() == Verdict::Undecided => report.undecided(
-            "the stability of the orbit, as ln |mu| of a multiplier is 0 within its error; other parameters decide, or a smaller `rtol`",
+            "the stability of the orbit, as ln |mu| of a multiplier is 0 within its error; try other parameters, or a smaller `rtol`",
         ),
         ending => ending,
     })
@@ -82,7 +82,8 @@ fn summary(orbit: &Orbit, checked: Option<&Crosscheck>, units: &Units) -> String
         several(orbit.work.steps, "step", "steps")
     );
     if orbit.in_family {
-        text += "; one of a family of periodic orbits with these parameters: a multiplier beside the trivial one is 1";
+        text +=
+            "; one of a family of periodic orbits with these parameters: a second multiplier is 1";
     }
     if let Some(Crosscheck {
         orbit: second,

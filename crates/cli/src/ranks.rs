@@ -21,7 +21,7 @@ impl Joined {
             return Ok(None);
         }
         let universe = mpi::initialize()
-            .ok_or_else(|| Error::Input("MPI is there but does not start".into()))?;
+            .ok_or_else(|| Error::Input("MPI is installed but does not start".into()))?;
         if universe.world().size() < 2 {
             return Ok(None);
         }

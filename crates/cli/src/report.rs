@@ -143,7 +143,7 @@ impl<'a> Report<'a> {
             (Format::Csv, Some(_)) => {
                 if !resumed.exists() {
                     report.say(format_args!(
-                        "{} is not there yet: nothing to resume",
+                        "{} does not exist yet: nothing to resume",
                         resumed.display()
                     ));
                 }

@@ -130,7 +130,7 @@ fn make(
     let bar = Bar::new(making.quiet, call);
     call.keeps(match kept {
         DirectoryKind::Whole { .. } => format!(
-            "what was finished is in {} and is not made again by the same command",
+            "finished parts are in {}, and the same command keeps them",
             out.display()
         ),
         DirectoryKind::Files => "the figure was not finished, and no file was written".into(),
@@ -192,7 +192,7 @@ fn summary(done: &Done, order: &Selection, wall: Duration, call: &Call) {
     }
     let of_processor = match done.made.len() {
         0 => "",
-        _ => "; the times above are of the processor, and count a piece for each that shows it",
+        _ => "; the times above are processor times, with shared work counted for each figure",
     };
     let report = if order.report { ", report.html" } else { "" };
     call.say(format_args!(

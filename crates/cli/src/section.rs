@@ -58,7 +58,7 @@ pub fn run(options: &SectionOptions, call: &Call) -> Result<Ending> {
         None if call.stops() => Ok(Ending::Interrupted),
         None if ending == Ending::Done && outcome.regime == Regime::Undecided => {
             let why = outcome.note.as_deref();
-            let why = why.unwrap_or("the returns do not tell; record more, or skip more");
+            let why = why.unwrap_or("the returns do not decide; record more, or skip more");
             Ok(report.undecided(format_args!("the regime: {why}")))
         }
         None => Ok(ending),

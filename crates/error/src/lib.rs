@@ -131,7 +131,7 @@ pub enum Error {
     },
     /// The field has no formula that power series could run on.
     #[error(
-        "this field is not written for power series, which the method taylor needs; choose another method"
+        "the method taylor needs equations that have power series, and these have none; choose another method"
     )]
     NotAnalytic,
     /// A run did not come back to the section within the time it was given.
@@ -150,7 +150,7 @@ pub enum Error {
     },
     /// An iteration stopped before its tolerance.
     #[error(
-        "{what} did not converge: residual {residual:e} after {iterations} iterations, {tolerance:e} was asked for"
+        "{what} did not converge: residual {residual:e} after {iterations} iterations, tolerance {tolerance:e}"
     )]
     NotConverged {
         /// What was solved.
@@ -172,14 +172,16 @@ pub enum Error {
     },
     /// A branch or curve has more points than are allowed.
     #[error(
-        "stopped after {limit} points, as many as allowed; raise `max_points`, or `step_limit` for longer steps"
+        "stopped at the limit of {limit} points; raise `max_points`, or `step_limit` for longer steps"
     )]
     TooManyPoints {
         /// The bound.
         limit: usize,
     },
     /// A formula that holds in few dimensions only was asked of a larger system.
-    #[error("{what} is known for systems of {known} variables only, and this one has {dimension}")]
+    #[error(
+        "{what} is available only for systems of {known} variables, and this one has {dimension}"
+    )]
     Dimension {
         /// The formula.
         what: &'static str,

@@ -58,7 +58,7 @@ pub(super) fn step_too_small(units: &MessageUnits, t: f64, h: f64) -> String {
 pub(super) fn blow_up(units: &MessageUnits, t: f64, uncertainty: Option<f64>) -> String {
     let t = known(t, uncertainty, units.time);
     format!(
-        "the solution blows up in finite time: at t = {t} it leaves every bound; there is no solution beyond"
+        "the solution blows up in finite time: it grows without bound at t = {t}, and no solution exists beyond"
     )
 }
 
@@ -69,7 +69,7 @@ pub(super) fn undecided_end(units: &MessageUnits, t: f64, again: Option<f64>) ->
     };
     let t = measured(t, units.time);
     format!(
-        "the run leaves every bound at t = {t}, but a second one with smaller tolerances {second}: whether the solution ends there is \
+        "the run grows without bound at t = {t}, but a second one with smaller tolerances {second}: whether the solution ends there is \
          undecided; try a smaller absolute tolerance"
     )
 }
@@ -83,13 +83,13 @@ pub(super) fn too_fast(
     let spacing = measured(t.abs() * f64::EPSILON, units.time);
     let t = known(t, uncertainty, units.time);
     let how = if overflows {
-        "its rates pass 1.8e308, the largest double".to_owned()
+        "its rates exceed 1.8e308, the largest double".to_owned()
     } else {
         format!("it changes within less than {spacing}, the spacing of doubles there")
     };
     let lasting = match lasting {
         Some(name) => format!(
-            "; solutions of the law {name} exist for all time, so this is no blow-up but the end of double precision"
+            "; solutions of the law {name} exist for all time, so this is not a blow-up but the limit of double precision"
         ),
         None => String::new(),
     };
@@ -106,7 +106,7 @@ pub(super) fn too_many_steps(units: &MessageUnits, limit: usize, t: f64, end: f6
         String::new()
     };
     format!(
-        "{} steps were used up at t = {}{before}; raise `max_steps`, loosen the tolerance or shorten the run",
+        "the limit of {} steps was reached at t = {}{before}; raise `max_steps`, loosen the tolerance or shorten the run",
         count(limit),
         measured(t, units.time)
     )
@@ -119,7 +119,7 @@ pub(super) fn non_finite(units: &MessageUnits, what: &str, t: f64) -> String {
 
 pub(super) fn underflow(units: &MessageUnits, variable: usize, t: f64) -> String {
     format!(
-        "variable {} fell below {:.1e}, the least double, and grows again: from t = {} on its value is not known; write the equations in its logarithm",
+        "variable {} fell below {:.1e}, the smallest normal double, and grows again: from t = {} on its value is unknown; use its logarithm as the variable",
         variable + 1,
         f64::MIN_POSITIVE,
         measured(t, units.time)
@@ -135,13 +135,13 @@ pub(super) fn no_return(
     let [since, t] = [since, t].map(|t| measured(t, units.time));
     if lowest > highest {
         return format!(
-            "no return to the section from t = {since} to t = {t}, which is less than a step; wait longer"
+            "no return to the section from t = {since} to t = {t}, which is less than one step; allow more time"
         );
     }
     let [section, lowest, highest] =
         [section, lowest, highest].map(|stress| measured(stress, units.stress));
     format!(
-        "no return to the section from t = {since} to t = {t}: the run stayed between {lowest} and {highest}, the section lies at {section}; move the section in between, cross it the other way or wait longer"
+        "no return to the section from t = {since} to t = {t}: the run stayed between {lowest} and {highest}, the section lies at {section}; move the section in between, cross it in the other direction or allow more time"
     )
 }
 
@@ -161,7 +161,7 @@ pub(super) fn stuck(units: &MessageUnits, driving: f64, stiffness: f64) -> Strin
     let driving = measured(driving, units.slip_rate);
     let stiffness = measured(stiffness, units.stiffness);
     format!(
-        "the curve ends at V_H = {driving}, K = {stiffness}, where the method goes no further; try a smaller `step_limit`"
+        "the curve ends at V_H = {driving}, K = {stiffness}, where no further point is found; try a smaller `step_limit`"
     )
 }
 

@@ -84,7 +84,7 @@ impl<'a> Run<'a> {
             let rows: usize = legs.map(|leg| course.rows(&leg.share, range)).sum();
             if rows > request.max_points {
                 let must = format!(
-                    "at least about {rows}: so many points have all branches of {interfaces} interfaces"
+                    "at least about {rows}, the number of points of all branches of {interfaces} interfaces"
                 );
                 return Err(Error::parameter("max-points", request.max_points, must));
             }

@@ -28,7 +28,7 @@ pub(super) fn steady_curve(slab: &InterfaceSystem, most: f64) -> Result<SteadyCu
         return Ok(SteadyCurve::whole(&slab.law));
     }
     SteadyCurve::new(&slab.law, 4.0 * most).ok_or_else(|| {
-        Error::Input("an extremum of the steady stress is not certainly one: what branches there are is not known".into())
+        Error::Input("an extremum of the steady stress could not be certified, so the number of branches is unknown".into())
     })
 }
 

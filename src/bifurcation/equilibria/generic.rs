@@ -196,9 +196,7 @@ impl<'a> FieldEquilibria<'a> {
         let mut look = EquilibriumObserver::new(self, settings.longest_step, seen);
         let mut branch = follow(&problem, &start, settings, &mut look)?;
         if look.jumped {
-            branch.stopped = Stop::Failed(
-                "another branch comes so near that steps can't keep to this one".into(),
-            );
+            branch.stopped = Stop::Failed("another branch is too close to stay on this one".into());
         }
         Ok(branch)
     }

@@ -434,10 +434,13 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
         if found.together > 0 && found.multiple.is_none() {
             let note = match label {
                 Some(Label::Hb) => {
-                    format!("pairs of eigenvalues on the axis: {}", found.together / 2)
+                    format!(
+                        "pairs of eigenvalues on the imaginary axis: {}",
+                        found.together / 2
+                    )
                 }
                 _ => format!(
-                    "eigenvalues that are 0: {}; other branches through this point are not followed",
+                    "zero eigenvalues: {}; other branches through this point are not followed",
                     found.together
                 ),
             };

@@ -19,10 +19,10 @@ impl Multiple {
     /// What is said of it.
     pub fn note(&self) -> String {
         let begins = match self.begins.len() {
-            0 => "which other branches begin here is not known".to_owned(),
+            0 => "the other branches that begin here are unknown".to_owned(),
             count => format!("branches that begin here: {count}"),
         };
-        format!("{} eigenvalues are 0; {begins}", self.point.multiplicity())
+        format!("{} zero eigenvalues; {begins}", self.point.multiplicity())
     }
 }
 

@@ -76,8 +76,7 @@ impl OrbitBranch<'_, '_, '_> {
             at: Uncertain::new(0.5 * (a + b), 0.5 * (b - a).abs()),
             is_saddle_node: false,
         };
-        let why = "the period grows without bound: the branch goes to and fro between two folds, its period longer by the same time after every turn, as \
-                   beside orbits that are homoclinic to another periodic orbit";
+        let why = "the period grows without bound: the branch oscillates between two folds, and its period grows by the same time at each pass, as near orbits homoclinic to another periodic orbit";
         let point = self.row(last, None);
         let mut end = self.longest(point, limit, why.to_owned());
         // The middle of two coordinates need not be that of the parameters.
@@ -110,8 +109,7 @@ impl OrbitBranch<'_, '_, '_> {
     fn of_vertical(&self, vertical: &Vertical, last: &Regular) -> GeneralPoint {
         let point = GeneralPoint {
             note: Some(format!(
-                "vertical branch: on {} orbits the parameter varies by no more than its error; all orbits exist at this value at once, as in \
-                 a conservative system; not followed further",
+                "vertical branch: on {} orbits the parameter varies by no more than its error; all these orbits exist at the same value, as in a conservative system; not followed further",
                 vertical.orbits()
             )),
             ..self.row(last, Some(Label::Ep))

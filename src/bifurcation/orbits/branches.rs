@@ -30,7 +30,8 @@ pub(super) const ARC: usize = 100_000;
 /// The first step onto a branch that bifurcates.
 const ASIDE: f64 = 0.02;
 /// What is said of an orbit that was found where no Hopf point is met.
-const BEGUN: &str = "begins here, at an orbit that was found: no Hopf point is met";
+const BEGUN: &str =
+    "begins here, at an orbit found by a search: there is no Hopf point in the range";
 
 /// Follows the branches of orbits over the range and hands on what is found: of two equal parts first those of symmetric orbits, then those of
 /// asymmetric ones, from Hopf points and from the pitchforks of orbits that none of these has come to.
@@ -291,7 +292,7 @@ impl<'b, 'a> OrbitBranches<'b, 'a> {
             Err(error) => {
                 let special = GeneralPoint {
                     label: Some(Label::Mx),
-                    note: Some(format!("no orbit is found beside the Hopf point: {error}")),
+                    note: Some(format!("no orbit was found near the Hopf point: {error}")),
                     criticality: None,
                     coefficient: None,
                     coefficient_uncertainty: None,

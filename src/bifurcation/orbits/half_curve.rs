@@ -326,7 +326,7 @@ impl<'s, 'c, 'a> HalfCurve<'s, 'c, 'a> {
         let point = match zero {
             Some(zero) => self.zero_of_coefficient(chart, zero),
             None => GeneralPoint {
-                note: Some("the curve ends on that of the pitchforks of orbits".into()),
+                note: Some("the curve ends on the curve of pitchforks of orbits".into()),
                 ..self.row(last, Some(Label::Cp))
             },
         };

@@ -168,7 +168,7 @@ fn symmetries(request: &LocusRequest) -> Result<Vec<Symmetry>> {
         LocusKind::PeriodDoubling | LocusKind::Torus => &[Symmetry::Asymmetric],
         _ => {
             return Err(Error::Input(
-                "equilibria have curves of their own: this one is of orbits".into(),
+                "a curve of bifurcations of orbits, not of equilibria".into(),
             ));
         }
     };

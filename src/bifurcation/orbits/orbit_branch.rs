@@ -255,7 +255,7 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
     fn shrinks(&mut self, i: usize, here: &Regular, teller: &mut Teller<'_>) {
         let point = if self.from_hopf == Some(i) {
             // One branch begins at a Hopf point: along a canard a step has turned round.
-            let why = "it comes back to the Hopf point that it begins at, the way that it has gone";
+            let why = "the branch returns along itself to the Hopf point where it began";
             self.end(here, why)
         } else {
             self.set.reached[i] = true;

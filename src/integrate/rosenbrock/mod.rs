@@ -149,7 +149,7 @@ impl<const N: usize> Rosenbrock<N> {
             return Err(Error::parameter(
                 "the dimension",
                 N,
-                "at most 100 for a Rosenbrock method, whose matrices stand on the stack",
+                "at most 100 for a Rosenbrock method",
             ));
         }
         if max_steps == 0 {
@@ -305,7 +305,7 @@ impl<const N: usize> Integrator<N> for Rosenbrock<N> {
             return Err(Error::parameter(
                 "the dimension",
                 N,
-                "at most 24 for the tangent flow of a Rosenbrock method, whose matrices stand on the stack",
+                "at most 24 for the tangent flow of a Rosenbrock method",
             ));
         }
         if const { N > SMALL } {

@@ -146,9 +146,9 @@ impl Ensemble<'_> {
         let (fit, draws) = (&self.plan.fit, self.plan.draws);
         let names: Vec<&str> = fit.parameters.iter().map(|one| one.name).collect();
         let derivatives = match sweeps {
-            true => "off: regimes have none".to_owned(),
+            true => "off: regimes have no derivatives".to_owned(),
             false => format!(
-                "{} members, on both sides in each parameter",
+                "{} members, one on either side in each parameter",
                 2 * names.len()
             ),
         };

@@ -106,7 +106,7 @@ pub fn run(options: &FitOptions, call: &Call) -> Result<Ending> {
     }
     Ok(match written {
         Ending::Done if !is_decided => report.undecided(format_args!(
-            "the fit, as {}; give that parameter a value, or take a record that tells more",
+            "the fit, as {}; give that parameter a value, or use a record that determines it",
             best.fit.verdict.undecided.join("; ")
         )),
         ending => ending,

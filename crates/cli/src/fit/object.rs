@@ -166,8 +166,8 @@ pub fn lines(plan: &FitPlan, found: &[Fitted<'_>], steps: &[FittedStep]) -> Vec<
         // What predicts worse is not better, whatever its likelihood is.
         let is_against = predicted.is_some_and(|(own, best)| own < best);
         let judged = match by {
-            by if by < 2.0 => "the data do not tell them apart",
-            _ if is_against => "but it predicts better: the data do not tell them apart",
+            by if by < 2.0 => "the data do not distinguish them",
+            _ if is_against => "but it predicts better: the data do not distinguish them",
             by if by < 10.0 => "some evidence for the other",
             _ => "decidedly worse",
         };

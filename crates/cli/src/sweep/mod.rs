@@ -93,7 +93,7 @@ fn rows(options: &SweepOptions, call: &Call, ranks: Option<&mut Ranks>) -> Resul
 /// What is said of rows whose regime is undecided.
 pub(super) fn undecided_rows(count: usize) -> String {
     format!(
-        "the regime of {}, whose notes say why; more `max_returns` and a smaller `rtol` decide more",
+        "the regime of {}, whose notes say why; more `max_returns` and a smaller `rtol` may decide more",
         several(count, "row", "rows")
     )
 }

@@ -31,12 +31,12 @@ pub fn run(options: &EquilibriaOptions, model: TextModel, call: &Call) -> Result
     let verdicts = found.equilibria.iter().filter(undecided).count();
     Ok(match (ending, &found.undecided[..]) {
         (Ending::Done, [first, ..]) => report.undecided(format_args!(
-            "the number of equilibria, as {} may hold any, near {}; a `box` without that place decides",
+            "the number of equilibria, as {} may contain any, near {}; try a `box` without that place",
             several(found.undecided.len(), "part of the box", "parts of the box"),
             near(&plan.model, first)
         )),
         (Ending::Done, []) if verdicts > 0 => report.undecided(format_args!(
-            "the stability of {}, as an eigenvalue is within its error of the imaginary axis; other parameters decide",
+            "the stability of {}, as an eigenvalue is within its error of the imaginary axis; try other parameters",
             several(verdicts, "equilibrium", "equilibria")
         )),
         (ending, _) => ending,

@@ -42,7 +42,7 @@ impl BranchKind {
     pub(super) fn doublings(self, doublings: usize) -> Result<usize> {
         if self == BranchKind::Equilibria && doublings > 0 {
             return Err(Error::Input(format!(
-                "`doublings` {doublings} goes with orbits: equilibria have no period"
+                "`doublings` {doublings} applies only to orbits: equilibria have no period"
             )));
         }
         Ok(doublings)
@@ -195,7 +195,7 @@ impl BranchPlan {
         let (from, to) = self.request.range;
         let method = match self.of {
             BranchKind::Equilibria => {
-                "each share of the slow, middle and fast branch of the law over its middle rate; the characteristic polynomials"
+                "every partition of the interfaces among the slow, middle and fast branch of the law, along the middle rate; characteristic polynomials"
             }
             BranchKind::Orbits => {
                 "taylor, tangents on, multiple shooting; begins at the Hopf points"
@@ -232,7 +232,7 @@ fn loading(system: &System, along: &BranchParameter, from: f64) -> Result<Loadin
     let twice = |given: Option<f64>| match given {
         None => Ok(()),
         Some(_) => Err(Error::Input(format!(
-            "`{0}` can't be given with `along` {0}, for it varies; use `from` and `to`",
+            "`{0}` cannot be given with `along` {0}, which makes it the free parameter; use `from` and `to`",
             along.name
         ))),
     };

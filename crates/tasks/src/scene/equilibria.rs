@@ -83,15 +83,15 @@ impl EquilibriaPlan {
             _ if self.system.unequal.is_some() => return self.explain_unequal(),
             1 => "off: one interface has none".to_owned(),
             2 => format!(
-                "{}, from a certain bracket around each solution",
+                "{}, from a certified bracket of each solution",
                 self.solver_name
             ),
-            _ => "each share of the slow, middle and fast branch of the law: signs in interval arithmetic bracket every solution, Newton's method in 31 digits".to_owned(),
+            _ => "every partition of the interfaces among the slow, middle and fast branch of the law: interval arithmetic brackets every solution, then Newton's method with 31 digits".to_owned(),
         };
         let stability = self.explain_stability();
         format!(
             "plan of this command
-  symmetric         closed formula at V_H over the number of interfaces
+  symmetric         closed form at V_H divided by the number of interfaces
   asymmetric        {asymmetric}
   stability         {stability}"
         )
@@ -100,7 +100,7 @@ impl EquilibriaPlan {
     fn explain_unequal(&self) -> String {
         format!(
             "plan of this command
-  states            branch and bound in interval arithmetic, then Newton's method in 31 digits; the interfaces differ: none is symmetric
+  states            branch and bound in interval arithmetic, then Newton's method with 31 digits; none is symmetric, as the interfaces differ
   stability         {}",
             self.explain_stability()
         )
@@ -189,7 +189,7 @@ pub(super) fn solver(name: Option<&str>, alone: Option<&str>) -> Result<(&'stati
         ("kinsol", None) => Ok(("kinsol", Solver::Kinsol)),
         #[cfg(not(feature = "sundials"))]
         ("kinsol", None) => Err(Error::Input(
-            "solver kinsol needs SUNDIALS, which this build is without; choose newton".into(),
+            "solver kinsol needs SUNDIALS, and this build has none; choose newton".into(),
         )),
         ("newton", _) => Ok(("newton", Solver::Newton)),
         (other, _) => Err(Error::unknown("solver", other, &["kinsol", "newton"])),

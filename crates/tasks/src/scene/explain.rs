@@ -88,11 +88,11 @@ fn driving(plan: &Plan) -> String {
     let changes = program.changes.len();
     let ramps = program.changes.iter().any(|change| change.until.is_some());
     format!(
-        "{} {}, at each of which the integrator starts anew{}",
+        "{} {}, at each of which the integrator restarts{}",
         count(changes),
         if changes == 1 { "change" } else { "changes" },
         if ramps {
-            "; along ramps V_H is a variable more"
+            "; along ramps V_H is an additional variable"
         } else {
             ""
         }
@@ -163,10 +163,11 @@ fn trajectory(plan: &Plan, keeping: Keeping) -> String {
     };
     let rows = match plan.sampling {
         Sampling::FinalOnly if plan.observed() => {
-            return "off: only the end is asked for; steps are watched for slip alone".into();
+            return "off: only the final state is requested; steps are observed only for slip"
+                .into();
         }
         Sampling::FinalOnly => {
-            return "off: only the end is asked for, no output needs the steps".into();
+            return "off: only the final state is requested, and no output needs the steps".into();
         }
         Sampling::EveryStep => "a row at every step".to_owned(),
         Sampling::Points(n) => format!("{n} rows equally spaced in time"),

@@ -51,7 +51,7 @@ impl Following {
         let second = options.crosscheck.as_deref().filter(|&name| name != "none");
         if second.is_some() && !orbits {
             return Err(Error::Input(
-                "`crosscheck` goes with orbits: equilibria and their bifurcations are not integrated".into(),
+                "`crosscheck` applies only to orbits: equilibria and their bifurcations are not integrated".into(),
             ));
         }
         Ok(Following {
@@ -74,7 +74,7 @@ pub(super) fn symmetry(name: &str, interfaces: usize) -> Result<Option<Symmetry>
         "both" => Ok(None),
         "symmetric" => Ok(Some(Symmetry::Symmetric)),
         "asymmetric" if interfaces == 1 => Err(Error::Input(
-            "symmetry is asymmetric, but a single interface has nothing to differ from".into(),
+            "symmetry is asymmetric, but there is a single interface".into(),
         )),
         "asymmetric" => Ok(Some(Symmetry::Asymmetric)),
         other => Err(Error::unknown("symmetry", other, &SYMMETRIES)),
@@ -136,12 +136,12 @@ pub(super) fn landings(
 /// The line of a plan on the symmetry.
 pub(super) fn explain_symmetry(symmetry: Option<Symmetry>, interfaces: usize) -> String {
     let words = match symmetry {
-        _ if interfaces == 1 => "a single interface has none; dimension 2",
+        _ if interfaces == 1 => "none: a single interface, in dimension 2",
         None if interfaces > 2 => "both: all interfaces in phase, and in clusters",
         Some(_) if interfaces > 2 => "one: all interfaces in phase, or in clusters",
         None => "both: symmetric in dimension 2, asymmetric in 3",
-        Some(Symmetry::Symmetric) => "symmetric alone, in dimension 2; the mode across beside it",
-        Some(Symmetry::Asymmetric) => "asymmetric alone, in dimension 3",
+        Some(Symmetry::Symmetric) => "symmetric only, in dimension 2, with the transverse mode",
+        Some(Symmetry::Asymmetric) => "asymmetric only, in dimension 3",
     };
     format!("  symmetry          {words}\n")
 }

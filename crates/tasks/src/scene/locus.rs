@@ -152,7 +152,7 @@ fn not_fixed(options: &LocusOptions) -> Result<()> {
     match given.iter().find(|(_, value)| value.is_some()) {
         None => Ok(()),
         Some((name, _)) => Err(Error::Input(format!(
-            "`{name}` varies along a curve and can't be given; use `{name}_range`, or `at_{name}` to land on a value"
+            "`{name}` is a free parameter of a curve and cannot be given; use `{name}_range`, or `at_{name}` to land on a value"
         ))),
     }
 }
@@ -246,7 +246,7 @@ impl LocusPlan {
         let method = if self.curve.orbits {
             "taylor, tangents on, multiple shooting, V_H and K unknown"
         } else {
-            "the conditions on equilibria; nothing is integrated"
+            "the equilibrium with the condition of the bifurcation; nothing is integrated"
         };
         let criticality = if self.request.criticality {
             "on: the normal form's coefficient at every point"

@@ -309,13 +309,12 @@ pub(super) fn dimension_in_words(system: &AnySystem, subspace: Subspace, start: 
     }
     match (subspace, count) {
         (Subspace::Symmetric, _) => {
-            "2: psi1 = psi2 at the start, so the run stays in the symmetric subspace (tau, ln psi) for ever".into()
+            "2: psi1 = psi2 at the start, so the run stays in the symmetric subspace (tau, ln psi)"
+                .into()
         }
         (_, 2) if system.clusters() == [1] => "2: one interface, (tau, ln psi)".into(),
         (_, 3) if system.differ() => "3: the interfaces differ, (tau, ln psi1, ln psi2)".into(),
-        (_, 3) if start[1] != start[2] => {
-            "3: psi1 and psi2 differ, (tau, ln psi1, ln psi2)".into()
-        }
+        (_, 3) if start[1] != start[2] => "3: psi1 and psi2 differ, (tau, ln psi1, ln psi2)".into(),
         _ => format!("{count}: {}", system.states().join(", ")),
     }
 }

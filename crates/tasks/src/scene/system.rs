@@ -149,12 +149,13 @@ impl System {
         let (slab, interfaces) = (&options.slab, options.slab.count() as usize);
         if slab.clusters.is_some() {
             return Err(Error::Input(
-                "`clusters`: all steady states are found, by clusters; leave it out".into(),
+                "`clusters`: the steady states of all clusters are found without it; leave it out"
+                    .into(),
             ));
         }
         if !(1..=MOST_INTERFACES).contains(&interfaces) {
             let must = format!(
-                "between 1 and {MOST_INTERFACES}: of more the number of arrangements is no double"
+                "between 1 and {MOST_INTERFACES}: the number of partitions of more interfaces is beyond the range of doubles"
             );
             return Err(Error::parameter("interfaces", interfaces, must));
         }
@@ -414,7 +415,7 @@ pub(super) fn damping(options: &SlabOptions) -> Result<f64> {
             Ok(positive("shear-modulus", modulus)? / (2.0 * positive("shear-wave-speed", speed)?))
         }
         (Some(_), None) | (None, Some(_)) => Err(Error::Input(
-            "`shear-modulus` and `shear-wave-speed` make a damping only together".into(),
+            "`shear-modulus` and `shear-wave-speed` give the damping only together".into(),
         )),
         (None, None) => {
             let damping = options.damping.unwrap_or(0.0);

@@ -125,7 +125,7 @@ pub(super) fn bounds(
     }
     if low < least {
         return Err(Error::Input(format!(
-            "`bounds` {text:?}: {name} is positive, so must be its lower bound"
+            "`bounds` {text:?}: {name} is positive, and so must its lower bound be"
         )));
     }
     Ok((low, high.min(most)))

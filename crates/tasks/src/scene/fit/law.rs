@@ -174,7 +174,7 @@ impl LawToFit {
         };
         if law.starts(shown, reference_rate).is_empty() {
             return Err(Error::Input(format!(
-                "the record shows neither a step nor a hold for the search to begin with: give values of {}, and name by `free` all that is fitted",
+                "the record has neither a step nor a hold from which to estimate starting values: give values of {}, and list in `free` all that is fitted",
                 law.free
                     .iter()
                     .filter(|free| law.value(&free.name).is_none() && free.name != DRIFT)

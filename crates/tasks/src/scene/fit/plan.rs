@@ -106,12 +106,12 @@ impl FitPlan {
             }
         }
         self.measured.notes.push(match &best {
-            None => "the load point moves in steps: friction follows its recorded displacement at no smoothing better, so that what this has beside them is noise of the transducer".into(),
+            None => "the load point moves in steps: no smoothing of its recorded displacement fits the friction better, so the rest of that record is noise of the transducer".into(),
             Some(one) if one.window == 0.0 => {
-                "the load point moves from sample to sample as it was recorded, which friction follows better than any smoothing".into()
+                "the load point moves as it was recorded, without smoothing, which fits the friction best".into()
             }
             Some(one) => format!(
-                "the load point moves as it was recorded, smoothed over {:.2} s, which friction follows best",
+                "the load point moves as it was recorded, smoothed over {:.2} s, which fits the friction best",
                 one.window
             ),
         });

@@ -249,7 +249,7 @@ impl<'s> GeneralBranchPlan<'s> {
 fn nothing(orbits: bool) -> Error {
     Error::NoOrbit {
         what: match orbits {
-            true => "no Hopf point is met on the equilibria in the range, and no orbit is found at its ends".into(),
+            true => "there is no Hopf point on the equilibria in the range, and no orbit was found at its ends".into(),
             false => "no equilibrium is found at either end of the range".into(),
         },
         period: None,

@@ -125,7 +125,7 @@ pub fn varies(model: &ModelOptions, free: &[&str]) -> Result<()> {
     for name in free {
         if model.gives(name)? {
             return Err(Error::Input(format!(
-                "`{name}` varies and can't be given; its range is asked for"
+                "`{name}` is a free parameter and cannot be given a value; give its range"
             )));
         }
     }

@@ -210,7 +210,7 @@ impl<'s> GeneralLocusPlan<'s> {
         let method = match self.kind.orbits {
             true => "taylor, tangents on, multiple shooting, both parameters unknown",
             false => {
-                "the equilibrium and what vanishes there, both parameters unknown; nothing is integrated"
+                "the equilibrium with the condition of the bifurcation, both parameters unknown; nothing is integrated"
             }
         };
         format!(

@@ -109,15 +109,13 @@ impl ManyEquilibriumPlan {
     /// The plan, one subject a line.
     pub fn explain(&self) -> String {
         let stability = match self.is_stiff {
-            true => {
-                "on: the argument principle along the imaginary axis, in steps that rounding alone could mislead"
-            }
+            true => "on: the argument principle along the imaginary axis, certain up to rounding",
             false => "off: it depends on the stiffness, which is not given",
         };
         format!(
             "plan of this command
   interfaces        {}, each with constants of its own, under one stress
-  state             one of possibly many: that which Newton's method comes to from the start, by {}; all are found for equal interfaces
+  state             one of possibly many: the one to which Newton's method ({}) converges from the start; of equal interfaces all are found
   stability         {stability}",
             twinslip::error::count(self.interfaces.count()),
             self.solver_name,

@@ -232,7 +232,7 @@ impl ManyPlan {
                     catalogue.threshold,
                     catalogue.rate,
                     if catalogue.participation {
-                        "; the part that each takes is kept"
+                        "; the participation of each is recorded"
                     } else {
                         ""
                     }

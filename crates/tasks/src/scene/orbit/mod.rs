@@ -66,7 +66,7 @@ impl OrbitPlan {
     pub fn explain(&self) -> String {
         let second = match &self.second {
             Some(second) => format!(
-                "{}, from nodes cut to three digits; rtol {:e}",
+                "{}, from nodes rounded to three digits; rtol {:e}",
                 second.method.name(),
                 second.tolerances.rtol
             ),
@@ -81,7 +81,7 @@ impl OrbitPlan {
   dimension         {}
   guess             {}
   method            {}, tangents on, multiple shooting; rtol {:e}{}{formulas}
-  uncertainties     the noise of all arcs, and two more solutions at other nodes and 8 times looser
+  uncertainties     the noise of all arcs, and two more solutions: at other nodes, and with a tolerance 8 times larger
   crosscheck        {second}
   dense output      {}",
             self.search.dimension(),

@@ -98,8 +98,8 @@ impl Search {
     /// Where it begins, in words.
     pub fn guess(&self) -> &'static str {
         let near = |period: Option<f64>| match period {
-            Some(_) => "the start, over the period given",
-            None => "the returns of the start, else what it settles on",
+            Some(_) => "the start, with the period given",
+            None => "the returns of the run from the start, else its attractor",
         };
         match self {
             Search::FromStart { period, .. } => near(*period),
@@ -111,7 +111,7 @@ impl Search {
                 (InitialGuess::At { period, .. }, _) => near(*period),
                 (InitialGuess::Anywhere, Search::Unequal(..)) => "what runs settle on",
                 (InitialGuess::Anywhere, _) => {
-                    "what runs settle on, else the branch from the nearest Hopf point"
+                    "the attractor of runs, else the branch from the nearest Hopf point"
                 }
                 (InitialGuess::Hopf, _) => "the branch from the nearest Hopf point, past its folds",
             },

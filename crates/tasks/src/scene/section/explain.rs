@@ -46,7 +46,7 @@ pub fn explain_section(plan: &SectionPlan) -> String {
     line(
         "returns",
         format!(
-            "{} after {} that are skipped; a run that does not return for {}{unit} ends",
+            "{} after {} skipped; a run that does not return for {}{unit} ends",
             plan.returns,
             plan.skip,
             units.outward(Quantity::Time, plan.patience),
@@ -55,13 +55,13 @@ pub fn explain_section(plan: &SectionPlan) -> String {
     line(
         "periodicity",
         format!(
-            "by Newton's method on the return map, up to {LONGEST_PERIOD} returns: its periodic point must attract"
+            "Newton's method on the return map, up to period {LONGEST_PERIOD}; the periodic point must be attracting"
         ),
     );
     line("tangents", tangents(plan).into());
     line(
         "trajectory",
-        "not stored: returns only, and some points between them for the tangents".into(),
+        "not stored: only returns, and some points between them for the tangents".into(),
     );
     text
 }
@@ -89,8 +89,8 @@ fn section(plan: &SectionPlan) -> String {
 
 fn tangents(plan: &SectionPlan) -> &'static str {
     if plan.lyapunov {
-        "on, for the Lyapunov exponents: ln |mu| / T of a periodic orbit; else carried by power series along a run of their own from the first return, at 1e-13, so that the error of the method is no bias"
+        "on, for the Lyapunov exponents: ln |mu| / T of a periodic orbit; otherwise by power series along a separate run from the first return, with tolerance 1e-13, so that the error of the method adds no bias"
     } else {
-        "off but for the periodic point: `lyapunov` is not given"
+        "only for the periodic point: `lyapunov` is not given"
     }
 }

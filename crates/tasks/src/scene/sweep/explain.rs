@@ -33,12 +33,12 @@ impl SweepPlan {
         };
         let follow = match (settings.follow, &settings.grid) {
             (true, Grid::Plane { .. }) => {
-                "on: each point starts on the attractor of its neighbour; a line of V_H at one K is computed in one go"
+                "on: each point starts on the attractor of its neighbour; a line of V_H at one K is computed as a whole"
             }
             (true, _) => {
-                "on: each point starts on the attractor of its neighbour; a line of the first parameter is computed in one go"
+                "on: each point starts on the attractor of its neighbour; a line of the first parameter is computed as a whole"
             }
-            (false, _) => "off: `follow` is not given; points are computed on their own",
+            (false, _) => "off: `follow` is not given; points are independent",
         };
         let lyapunov = match settings.lyapunov {
             true => "of every point",
@@ -50,13 +50,13 @@ impl SweepPlan {
         };
         let method = match settings.grid {
             Grid::Plane { .. } | Grid::Basin { .. } => {
-                "taylor, several points side by side in the lanes of a core"
+                "taylor, several points at once in vector lanes"
             }
-            Grid::Systems { .. } => "taylor, one point after the other",
+            Grid::Systems { .. } => "taylor, one point at a time",
         };
         let curves = match (&settings.grid, self.drawn && self.curves.is_empty()) {
             (Grid::Systems { .. }, true) => {
-                "\n  curves            none: those of bifurcations are drawn over V_H and K of equal interfaces, or of one"
+                "\n  curves            none: bifurcations are drawn only over V_H and K of equal interfaces, or of one"
             }
             _ => "",
         };
@@ -73,7 +73,7 @@ impl SweepPlan {
   rtol              {:e}{section}
   following         {follow}
   exponents         {lyapunov}
-  bound on work     {} returns, {} steps a point
+  bound on work     {} returns, {} steps per point
   rows              written in the order of the grid as soon as all before them are done{curves}",
             count(settings.points()),
             settings.rtol,
@@ -97,10 +97,10 @@ impl SweepPlan {
                     .and_then(|text| text.split_once('='))
                 {
                     Some((_, value)) => format!(
-                        "{name} falling through {value}; the transient, in steps and not in time, is passed to learn the scale of time"
+                        "{name} falling through {value}; the time scale is measured along a transient counted in steps"
                     ),
                     None => format!(
-                        "{name} falling through the middle of what it swings through after the transient: 512 steps, and then windows of 512 and twice as many each until it has turned round six times in one"
+                        "{name} falling through the middle of its range after a transient of 512 steps, in windows of 512 steps that double until one has six turning points"
                     ),
                 }
             }

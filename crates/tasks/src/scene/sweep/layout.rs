@@ -70,7 +70,7 @@ impl SweepLayout {
         match self.parameters.iter().find(|(name, _)| taken(name)) {
             None => Ok(()),
             Some((name, _)) => Err(Error::Input(format!(
-                "`grid` {name}: rows have another column of this name; call the parameter otherwise in its file"
+                "`grid` {name}: rows have another column of this name; rename the parameter in its file"
             ))),
         }
     }

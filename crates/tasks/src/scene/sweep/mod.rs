@@ -131,7 +131,7 @@ impl SweepPlan {
         let curves = match (&options.plot, &system) {
             (Some(_), _) if settings.grid.ranges().is_empty() => {
                 return Err(Error::Input(
-                    "`plot` draws what there is over one parameter or two, and here none varies; leave it out, or let one vary".into(),
+                    "`plot` needs one or two free parameters, and here there is none; leave it out, or vary a parameter".into(),
                 ));
             }
             (Some(_), Swept::Interfaces(system)) => {
@@ -276,7 +276,7 @@ fn starts(
     }
     if let Some(name) = axes.names.first() {
         return Err(Error::Input(format!(
-            "with `basin` nothing but starts varies; give {name} a single value"
+            "with `basin` only the starts vary; give {name} a single value"
         )));
     }
     BasinStates::read(options, moves, units).map(Some)

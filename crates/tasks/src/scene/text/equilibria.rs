@@ -201,7 +201,7 @@ fn ranges(text: &str, model: &TextModel) -> Result<Vec<Interval>> {
         };
         if low >= high {
             return Err(Error::Input(format!(
-                "`box` {text:?}: the range of {name} must rise, and goes from {low} to {high}"
+                "`box` {text:?}: the range of {name} must increase, but goes from {low} to {high}"
             )));
         }
         let i = model.state("a state in `box`", name)?;

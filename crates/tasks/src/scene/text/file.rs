@@ -271,7 +271,7 @@ impl<'a> Tables<'a> {
             DeValue::Integer(number) if number.radix() == 10 => number.as_str(),
             DeValue::Float(number) => number.as_str(),
             other => {
-                let what = format!("a number must stand here, not {}", other.type_str());
+                let what = format!("a number is expected here, not {}", other.type_str());
                 return Err(self.reader.misplaced(value.span().start, what));
             }
         };

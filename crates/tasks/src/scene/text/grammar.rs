@@ -129,7 +129,7 @@ fn descend(input: &mut Text<'_>, at: usize) -> Read<()> {
     if input.state > DEEPEST {
         return cut(
             at,
-            format!("parentheses, signs and powers stand more than {DEEPEST} deep in each other"),
+            format!("parentheses, signs and powers are nested more than {DEEPEST} deep"),
         );
     }
     Ok(())

@@ -160,7 +160,7 @@ impl<'t, 'a> Lowering<'t, 'a> {
             return format!("{name:?} is a function, whose argument must follow in parentheses");
         }
         if name == TIME {
-            return format!("{name:?} is time, and a law is the same at all times");
+            return format!("{name:?} is time, on which a law cannot depend");
         }
         if name == "time" && self.takes_time {
             return format!("{name:?} is no state: in formulas time is called {TIME}");
