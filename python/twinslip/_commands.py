@@ -15,8 +15,8 @@ import numpy.typing as npt
 
 from .results import Branch, Equilibria, Fit, LawCurve, Locus, Orbit, Section, Sweep, Trajectory
 
-#: A number.
-Number = Optional[SupportsFloat]
+#: A number, or a text with its unit such as ``"10um"``.
+Number = Union[SupportsFloat, str, None]
 #: A whole number; 1e6 is one.
 Count = Union[SupportsIndex, float, None]
 #: The name of a file.
@@ -65,9 +65,10 @@ class Model:
         time_unit: Text = None,
         shear_modulus: Number = None,
         shear_wave_speed: Number = None,
-        **parameters: SupportsFloat,
+        **parameters: Union[SupportsFloat, str],
     ) -> None:
-        """Keeps what is given; the defaults are those of the command line, which are the paper's.
+        """Keeps what is given; the defaults are those of the command line, which are the paper's. A number may be a text with its
+        unit, such as ``slip_length="10um"``, which implies ``si``; every method takes such numbers, too.
 
         Parameters
         ----------
@@ -76,9 +77,9 @@ class Model:
             regularised-ageing (5), dieterich-ruina (4) or slip Ruina (1983); ageing is dieterich-
             ruina. Or a user-defined law: FILE.toml with slip_rate (in tau and psi), evolution (in
             v and psi) and parameters [default: spinodal]
-        driving : float, optional
+        driving : float or str, optional
             Driving velocity V_H [V*; m/s with ``si``]
-        stiffness : float, optional
+        stiffness : float or str, optional
             Stiffness K = k L/(a sigma) [a sigma/L; k in Pa/m with ``si``]
         system : path or text, optional
             A user-defined system in place of interfaces: a TOML file with its states, parameters
@@ -90,37 +91,37 @@ class Model:
         clusters : sequence of int, optional
             Group equal interfaces into clusters that move together: the sizes of the clusters, N
             in total. States, slip rates and starts then have one number per cluster
-        healing_time : float, optional
+        healing_time : float or str, optional
             Healing time R = t** V*/L [default: 100 L/V*; t** in s with ``si``]
-        residual_strength : float, optional
+        residual_strength : float or str, optional
             Residual strength c of the spinodal law [default: 1e-3]
-        direct_effect : float, optional
+        direct_effect : float or str, optional
             Direct effect a [default: 0.0349]
-        evolution_effect : float, optional
+        evolution_effect : float or str, optional
             Evolution effect b [default: 0.0489]
-        reference_friction : float, optional
+        reference_friction : float or str, optional
             Friction coefficient a_v at V* [default: 0.369]
-        damping : float, optional
+        damping : float or str, optional
             Radiation damping eta V*/(a sigma): tau - eta v stands in place of tau in the law
             [default: 0; eta in Pa s/m with ``si``]
         si : bool, optional
             All input and output in SI units; implied by a value with a unit, such as 10um, 50MPa,
             1nm/s or 500year
-        slip_length : float, optional
+        slip_length : float or str, optional
             With ``si``: L in m [default: 0.9e-6]
-        normal_stress : float, optional
+        normal_stress : float or str, optional
             With ``si``: sigma in Pa; it only scales stress and stiffness, and the paper gives none
             [default: 1e6]
-        reference_rate : float, optional
+        reference_rate : float or str, optional
             With ``si``: V* in m/s [default: 1e-6]
         time_unit : str, optional
             With ``si``: unit of times in and out (run, period, and the state of laws in which it
             is a time); parameters stay in SI [default: s]
-        shear_modulus : float, optional
+        shear_modulus : float or str, optional
             With ``si``: G in Pa, for the damping G/(2 c_s)
-        shear_wave_speed : float, optional
+        shear_wave_speed : float or str, optional
             With ``si``: c_s in m/s, for the damping G/(2 c_s)
-        **parameters : float
+        **parameters : float or str
             Any other parameter by the name that JSON has; with _1 or _2 after it that of one
             interface: ``residual_strength_2=0.002``. Those of a user-defined system by their own
             names.
@@ -150,7 +151,7 @@ class Commands:
         *,
         ensemble: Text = None,
         points: Count = None,
-        range: Optional[tuple[float, float]] = None,
+        range: Optional[tuple[Number, Number]] = None,
         progress: Optional[bool] = None,
     ) -> LawCurve:
         """The steady-state friction law of one interface: tau_ss(V), its extrema, the critical stiffness k_c(V).
@@ -165,7 +166,7 @@ class Commands:
             [default N: 200; 50 for sweep, which uses draws alone]
         points : int, optional
             Number of slip rates, equally spaced in ln V [default: 200]
-        range : (float, float), optional
+        range : (float or str, float or str), optional
             Lowest and highest slip rate [default: 1e-3 to 1e6 V*]
         progress : bool, optional
             Whether a long computation shows a bar, by tqdm [default: in a notebook and on a
@@ -226,11 +227,11 @@ class Commands:
             = 0 is a hold, and "T1-T2:V" for a ramp; or FILE.csv with the columns time, driving
             and, for ramps, until. Rows then have a column driving and stand on both sides of a
             change
-        until : float, optional
+        until : float or str, optional
             End time of the run, which begins at 0
         points : int, optional
             N rows equally spaced in time, both ends included, instead of one per step
-        every : float, optional
+        every : float or str, optional
             A row at every multiple of DT
         final_only : bool, optional
             Only the last row: nothing else is stored, and without slip columns nothing but the
@@ -241,7 +242,7 @@ class Commands:
             Find stick-slip events. With one or two interfaces: from a maximum of stress to the
             next minimum, while the interfaces together slip faster than V_H. With three or more:
             while at least one slips faster than a threshold
-        event_threshold : float, optional
+        event_threshold : float or str, optional
             Count events whose total slip rate exceeds X times V_H [default: 2]; with ``program``,
             X times the current V_H, so that a hold (V_H = 0), in which all slip is faster, counts
             as one event. With three or more interfaces, an interface slips while it is faster than
@@ -249,11 +250,11 @@ class Commands:
         method : str, optional
             Integrator: auto, taylor, rodas5p, rodas4, rosenbrock23, radau, cvode-bdf or cvode-
             adams [default: auto]
-        rtol : float, optional
+        rtol : float or str, optional
             Relative local error tolerance [default: 1e-8]
-        atol : float, optional
+        atol : float or str, optional
             Absolute local error tolerance of tau and ln psi [default: as ``rtol``]
-        max_step : float, optional
+        max_step : float or str, optional
             Largest time step, for features shorter than a step: no method sees a pulse that begins
             and ends within one step
         max_steps : int, optional
@@ -376,7 +377,7 @@ class Commands:
             symmetric[:EPS]; or hopf, for the branch from the nearest Hopf point along V_H. By
             default the orbit is searched for. For a system from a file: all states in order
             [default: its table start]
-        period_guess : float, optional
+        period_guess : float or str, optional
             Approximate period; shorter cycles are then not accepted
         points : int, optional
             Rows over one period, as in integrate: N equally spaced in time, from
@@ -388,12 +389,12 @@ class Commands:
         method : str, optional
             Method for the flow and its derivatives: auto (taylor), taylor, cvode-bdf, cvode-adams,
             rodas5p, rodas4, rosenbrock23 or radau [default: auto]
-        rtol : float, optional
+        rtol : float or str, optional
             Relative local error tolerance [default: 1e-15 for taylor, 1e-13 for radau, 1e-11 for
             the others]
-        atol : float, optional
+        atol : float or str, optional
             Absolute local error tolerance of tau and ln psi [default: as ``rtol``]
-        max_step : float, optional
+        max_step : float or str, optional
             Largest time step, for features shorter than a step: no method sees a pulse that begins
             and ends within one step
         max_steps : int, optional
@@ -456,7 +457,7 @@ class Commands:
             Number of returns to record [default: 1000]
         skip : int, optional
             Number of returns to skip first, as a transient [default: 1000]
-        patience : float, optional
+        patience : float or str, optional
             Longest time to wait for a return [default: 1e4 L/V* + 1000/(K V_H); 1e4 with
             ``system``]
         lyapunov : bool, optional
@@ -465,11 +466,11 @@ class Commands:
         method : str, optional
             Integrator: auto, taylor, rodas5p, rodas4, rosenbrock23, radau, cvode-bdf or cvode-
             adams [default: auto]
-        rtol : float, optional
+        rtol : float or str, optional
             Relative local error tolerance [default: 1e-8]
-        atol : float, optional
+        atol : float or str, optional
             Absolute local error tolerance of tau and ln psi [default: as ``rtol``]
-        max_step : float, optional
+        max_step : float or str, optional
             Largest time step, for features shorter than a step: no method sees a pulse that begins
             and ends within one step
         max_steps : int, optional
@@ -508,7 +509,7 @@ class Commands:
         max_points: Count = None,
         tolerance: Number = None,
         crosscheck: Union[bool, str, None] = None,
-        range: Optional[tuple[float, float]] = None,
+        range: Optional[tuple[Number, Number]] = None,
         progress: Optional[bool] = None,
     ) -> Branch:
         """Equilibria or periodic orbits as V_H or K varies, with their bifurcations.
@@ -543,20 +544,20 @@ class Commands:
             Branches of orbits begin at or near this point of an orbit, at ``from_``:
             TAU,PSI1,PSI2, or with ``system`` the values of all states in order. Branches of
             equilibria of a ``system`` begin near it [default: the file's table start]
-        period_guess : float, optional
+        period_guess : float or str, optional
             With ``start`` of an orbit: its approximate period
-        step_limit : float, optional
+        step_limit : float or str, optional
             Factor on the limits of continuation steps: below 1 there are more points, above 1
             fewer [default: 1]
         max_points : int, optional
             Upper limit on the number of points of all branches or curves together; beyond it the
             command fails and the points are kept [default: 20000]
-        tolerance : float, optional
+        tolerance : float or str, optional
             Relative accuracy of special points, and of all points of a curve [default: 1e-11]
         crosscheck : str, optional
             Recompute each special point of orbits with a second method and report the difference
             [default METHOD: cvode-adams; rodas5p in a build without SUNDIALS]
-        range : (float, float), optional
+        range : (float or str, float or str), optional
             Where the branches begin and end [default: V_H from 1e-3 to 1e6 V*; K from 1e-3 to 1 a
             sigma/L]
         progress : bool, optional
@@ -597,7 +598,7 @@ class Commands:
         tolerance: Number = None,
         crosscheck: Union[bool, str, None] = None,
         progress: Optional[bool] = None,
-        **ranges: tuple[float, float],
+        **ranges: tuple[Number, Number],
     ) -> Locus:
         """A curve of bifurcations in the plane of V_H and K, with its special points.
 
@@ -638,15 +639,15 @@ class Commands:
             Branches of orbits begin at or near this point of an orbit, at ``from_``:
             TAU,PSI1,PSI2, or with ``system`` the values of all states in order. Branches of
             equilibria of a ``system`` begin near it [default: the file's table start]
-        period_guess : float, optional
+        period_guess : float or str, optional
             With ``start`` of an orbit: its approximate period
-        step_limit : float, optional
+        step_limit : float or str, optional
             Factor on the limits of continuation steps: below 1 there are more points, above 1
             fewer [default: 1]
         max_points : int, optional
             Upper limit on the number of points of all branches or curves together; beyond it the
             command fails and the points are kept [default: 20000]
-        tolerance : float, optional
+        tolerance : float or str, optional
             Relative accuracy of special points, and of all points of a curve [default: 1e-11]
         crosscheck : str, optional
             Recompute each special point of orbits with a second method and report the difference
@@ -654,7 +655,7 @@ class Commands:
         progress : bool, optional
             Whether a long computation shows a bar, by tqdm [default: in a notebook and on a
             terminal].
-        **ranges : (float, float)
+        **ranges : (float or str, float or str)
             The window in each parameter of the plane: ``driving=(0.05, 300)``, ``stiffness=(0.02,
             0.3)``, or any other by its name.
 
@@ -747,7 +748,7 @@ class Commands:
             [default: none]
         threads : int, optional
             Threads [default: one per processor]; rows do not depend on their number
-        rtol : float, optional
+        rtol : float or str, optional
             Relative local error tolerance [default: 1e-8]
         lyapunov : bool, optional
             Compute the largest Lyapunov exponent of every point, not only of those whose regime
@@ -817,13 +818,13 @@ class Commands:
             those of a law from a file. Parameters with neither a value nor a default are fitted
             too [default: direct_effect,evolution_effect,slip_length,stiffness,reference_friction,
             with ``states`` 2 also evolution_effect_2,slip_length_2]
-        evolution_effect_2 : float, optional
+        evolution_effect_2 : float or str, optional
             b of the second state variable
-        slip_length_2 : float, optional
+        slip_length_2 : float or str, optional
             L of the second state variable, in m
         stiffness : str, number or sequence, optional
             Stiffness of the apparatus, in Pa/m, or as friction per length: 0.003/um
-        drift : float, optional
+        drift : float or str, optional
             Slope of an added straight line, friction per metre of load-point displacement
             [default: 0]
         program : str or sequence of (time, V_H) and ((begin, end), V_H), optional
@@ -842,9 +843,9 @@ class Commands:
             Column of the normal stress
         weights : str or int, optional
             Column of weights of the squared residuals
-        from\_ : float, optional
+        from\_ : float or str, optional
             First time of the window in s, as in the record
-        to : float, optional
+        to : float or str, optional
             Last time of the window in s
         decimate : int, optional
             Use every N-th sample [default: 1]
@@ -853,7 +854,7 @@ class Commands:
         loss : str, optional
             Loss function of the residuals: linear (least squares), or soft-l1, huber or cauchy,
             which reduce the weight of outliers [default: linear]
-        loss_scale : float, optional
+        loss_scale : float or str, optional
             Scale of a robust loss, in friction [default: 3 times the scatter from sample to
             sample]
         intervals : str, number or sequence, optional

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any, NamedTuple, Optional
@@ -53,8 +54,19 @@ def model_options() -> dict[str, Option]:
     return {name: option for name, option in every if option.heading in MODEL}
 
 
+#: A number, perhaps with a unit behind it, which the command reads.
+MEASURED = re.compile(r"\s*[+-]?\.?[0-9]")
+
+
 def number(field: str, value: Any) -> str:
-    """The shortest text that reads back as the same double."""
+    """The shortest text that reads back as the same double; a number with its unit as it is."""
+    if isinstance(value, str):
+        if MEASURED.match(value):
+            return value.strip()
+        raise InputError(
+            f"{field} is {value!r}, but must be a number, or a number with its unit such as '10um'",
+            field,
+        )
     try:
         x = float(value)
     except (TypeError, ValueError):
