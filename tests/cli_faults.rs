@@ -64,6 +64,33 @@ fn a_run_of_a_fault_has_a_summary() {
     assert!(said.contains(&line) && said.contains(" year ("), "{said}");
 }
 
+/// Where V_H changes events answer to that: there is no recurrence and no one k_c, and the first event is left out as elsewhere.
+#[test]
+fn a_loading_program_has_a_summary_of_the_events_that_are_asked_for() {
+    let run = format!("{FAULT} --until 500year --program 250year:70mm/year --events");
+    let made = object(&run);
+    let summary = &made["result"]["summary"];
+    let events = made["result"]["events"].as_array().expect("events");
+    assert!(events.len() > 2);
+    assert_eq!(summary["events"], events.len());
+    assert_eq!(summary["recurrence"], Value::Null);
+    assert_eq!(summary["critical_stiffness"], Value::Null);
+    assert_eq!(summary["first_event_left_out"], true);
+    let drops = events
+        .iter()
+        .skip(1)
+        .map(|event| number(event, "/stress_drop"));
+    assert_eq!(
+        number(summary, "/stress_drop/max"),
+        drops.fold(0.0, f64::max)
+    );
+    let said = twinslip(&format!("{run} -o - --format table")).err;
+    assert!(
+        said.contains("events: mean stress drop without the first event "),
+        "{said}"
+    );
+}
+
 #[test]
 fn only_runs_in_si_have_a_summary() {
     let summary = |arguments: &str| object(arguments)["result"]["summary"].clone();

@@ -15,6 +15,7 @@ pub fn object(fault: &FaultSummary) -> Value {
         "events": fault.events,
         "recurrence": spread(fault.recurrence),
         "stress_drop": spread(fault.stress_drop),
+        "first_event_left_out": fault.first_left_out,
         "peak_slip_rate": fault.peak_slip_rate,
     })
 }
@@ -36,9 +37,13 @@ pub fn line(fault: &FaultSummary, units: &Units) -> String {
         events => several(events, "event", "events"),
     };
     let mut found = Vec::new();
+    let without_first = match fault.first_left_out {
+        true => "mean stress drop without the first event",
+        false => "mean stress drop",
+    };
     for (what, spread, quantity) in [
         ("mean recurrence", fault.recurrence, Quantity::Time),
-        ("mean stress drop", fault.stress_drop, Quantity::Stress),
+        (without_first, fault.stress_drop, Quantity::Stress),
     ] {
         let Some(Spread { mean, least, most }) = spread else {
             continue;

@@ -43,7 +43,7 @@ pub(super) fn parting(
     let pitchfork = steady.extremum(branch).filter(|_| interfaces == 2);
     let Some(extremum) = pitchfork else {
         return Special {
-            note: Some(format!("{together} interfaces that slide alike may part")),
+            note: Some(format!("a cluster of {together} interfaces may split")),
             ..point
         };
     };

@@ -323,7 +323,7 @@ pub(super) fn dimension_in_words(system: &AnySystem, subspace: Subspace, start: 
 pub(super) fn tolerance_in_words(system: &AnySystem, atol: f64, told: &Value) -> String {
     let of = match (system.slides(), told.is_array()) {
         (true, _) => "on (tau, ln psi)",
-        (false, true) => "of how far each state has come",
+        (false, true) => "of the range of each state so far",
         (false, false) => "on every state",
     };
     format!("atol {atol:e} {of}")

@@ -50,19 +50,22 @@ pub struct FaultSummary {
     pub recurrence: Option<Spread>,
     /// Of all events but the first, which depends on the start; of that where there is no other.
     pub stress_drop: Option<Spread>,
+    /// Whether the stress drop of the first event is left out.
+    pub first_left_out: bool,
     /// The largest of all events.
     pub peak_slip_rate: Option<f64>,
 }
 
 impl FaultSummary {
-    /// Of a run that has one: in SI, at one driving velocity, and watched between its start and its end. Where the velocity changes events answer to
-    /// that, and there is nothing to recur.
+    /// The summary of a run in SI that is watched between its start and its end; `None` for another one. Under a program events are those that
+    /// are asked for, and have no recurrence, as they answer to the program; k_c changes with V_H.
     pub fn new(plan: &Plan, outcome: &RunOutcome) -> Option<Self> {
         plan.detected()?;
         let units = plan.system.units();
-        if !units.si() || plan.program.is_some() {
+        if !units.si() {
             return None;
         }
+        let steady = plan.program.is_none();
         let spread = |quantity, number: fn(&SlipEvent) -> Option<f64>| {
             let numbers = outcome.events.iter().filter_map(number);
             Spread::of(numbers.map(|x| units.outward(quantity, x)))
@@ -72,9 +75,10 @@ impl FaultSummary {
             event.recurrence.map(|_| event.stress_drop)
         });
         Some(FaultSummary {
-            criticality: criticality(plan),
+            criticality: criticality(plan).filter(|_| steady),
             events: outcome.events.len(),
-            recurrence: spread(Quantity::Time, |event| event.recurrence),
+            recurrence: spread(Quantity::Time, |event| event.recurrence).filter(|_| steady),
+            first_left_out: later.is_some(),
             stress_drop: later
                 .or_else(|| spread(Quantity::Stress, |event| Some(event.stress_drop))),
             peak_slip_rate: peak.map(|peak| peak.most),
