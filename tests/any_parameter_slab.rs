@@ -306,10 +306,6 @@ fn the_damping_varies_in_pascal_seconds_per_metre() {
             all[0]
         );
     }
-    refused_in_one_line(
-        "branch equilibria --si --driving 1e-5 --stiffness 1e10 --along direct_effect --from 0.01 --to 0.02",
-        "sets the unit of stress",
-    );
 }
 
 #[test]

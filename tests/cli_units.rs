@@ -172,6 +172,10 @@ fn ranges_by_name_are_those_of_the_older_options() {
             "sweep --grid K=0.3:0.5:2 --driving 1000",
             "sweep --grid stiffness=0.3:0.5:2 --driving 1000",
         ),
+        (
+            "branch equilibria --driving 1um/s --stiffness 5GPa/m --along Dc=1um:2um",
+            "branch equilibria --si --driving 1e-6 --stiffness 5e9 --along slip_length --from 1e-6 --to 2e-6",
+        ),
     ] {
         let (new, old) = (object(new), object(old));
         assert_eq!(new["result"], old["result"]);
@@ -180,10 +184,6 @@ fn ranges_by_name_are_those_of_the_older_options() {
     refused(
         "branch equilibria --stiffness 0.3 --along driving=0.1:10:20",
         "points are placed by the curve",
-    );
-    refused(
-        "branch equilibria --driving 1um/s --stiffness 5GPa/m --along Dc=1um:2um",
-        "--slip-length scales all other numbers and cannot vary here; vary --stiffness and --healing-time",
     );
     refused(
         "branch equilibria --stiffness 0.3 --along driving=0.1:10 --from 1",

@@ -117,6 +117,7 @@ mod section_landings;
 mod section_regimes;
 mod sections_of_systems;
 mod series_of_interfaces;
+mod si_varies;
 mod slip_events;
 mod solution_curves;
 mod special_points;

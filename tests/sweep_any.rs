@@ -413,10 +413,6 @@ fn what_cannot_vary_is_refused_in_one_sentence() {
             "it is the unit of other numbers",
         ),
         (
-            "--driving 1e-7 --stiffness 1e10 --si --grid direct_effect=0.01:0.02:2",
-            "leave --si out",
-        ),
-        (
             "--interfaces 1 --driving 0.1 --stiffness 0.1 --grid healing_time_2=1:2:2",
             "there is one interface",
         ),

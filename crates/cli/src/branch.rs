@@ -14,7 +14,7 @@ pub const BRANCHES: [&str; 2] = ["branch", "branches"];
 pub fn run(options: &BranchOptions, call: &Call) -> Result<Ending> {
     if !options.by_shares()? {
         if let Some(model) = TextModel::of(
-            &options.model,
+            &options.reference()?,
             &[options.along.as_deref().unwrap_or("driving")],
         )? {
             let orbits = options.of.as_deref() == Some("orbits");

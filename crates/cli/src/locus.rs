@@ -16,7 +16,7 @@ pub const CURVES: [&str; 2] = ["curve", "curves"];
 pub fn run(options: &LocusOptions, call: &Call) -> Result<Ending> {
     if !options.by_shares()? {
         if let Some(model) = TextModel::of(
-            &options.model,
+            &options.reference()?,
             &plane(options.plane.as_deref().unwrap_or("driving,stiffness"))?,
         )? {
             let orbits = CurveChoice::named(options.of.as_deref())?.of_orbits();

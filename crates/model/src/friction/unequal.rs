@@ -1,7 +1,8 @@
 //! Two interfaces that differ: the constants of each, and their laws in the units of the first.
 //!
-//! Stress is measured in a_1 sigma_1, slip rate in V* and time in L_1/V*. Of interface i, with n_i = sigma_i/sigma_1, l_i = L_i/L_1
-//! and q_i = a_1/(n_i a_i), v_i = law_i(q_i (tau - eta v_i), psi_i), and its state evolves as that of its law at the slip rate v_i/l_i. The
+//! Stress is measured in a_1 sigma_1, slip rate in V* and time in L_1/V*. Where L_1, sigma_1 or a_1 varies the units are those of some
+//! fixed L, sigma and a instead ([`UnequalLaws::measured_in`]), and l_1 and n_1 need not be 1. Of interface i, with n_i = sigma_i/sigma,
+//! l_i = L_i/L and q_i = a/(n_i a_i), v_i = law_i(q_i (tau - eta v_i), psi_i), and its state evolves as that of its law at the slip rate v_i/l_i. The
 //! strength is that of its own slip length ([`Parameters::of_slip_length`]), and so the friction of steady sliding at V* its own a_v. In
 //! u_i = v_i/l_i that is the law itself with gamma0_i/l_i in place of gamma0_i and q_i eta l_i in place of eta: see [`ScaledLaw`].
 
@@ -12,7 +13,7 @@ use crate::number::{Free, Real};
 /// The constants of one interface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct InterfaceConstants {
-    /// R = t** V*/L_1.
+    /// R = t** V*/L.
     pub healing_time: f64,
     /// c.
     pub residual_strength: f64,
@@ -22,9 +23,9 @@ pub struct InterfaceConstants {
     pub evolution_effect: f64,
     /// a_v.
     pub reference_friction: f64,
-    /// L/L_1.
+    /// L_i/L, in units of the first interface L_i/L_1.
     pub slip_length: f64,
-    /// sigma/sigma_1.
+    /// sigma_i/sigma, in units of the first interface sigma_i/sigma_1.
     pub normal_stress: f64,
 }
 
@@ -92,6 +93,8 @@ impl From<InterfaceConstants> for [f64; COUNT] {
 pub struct UnequalLaws {
     constants: [InterfaceConstants; 2],
     damping: f64,
+    /// The a of the unit of stress, where it is not that of the first interface.
+    unit: Option<f64>,
     laws: [ScaledLaw; 2],
 }
 
@@ -99,9 +102,34 @@ impl UnequalLaws {
     /// The law of this name with the constants of both interfaces, and the radiation damping eta V*/(a_1 sigma_1) that both have.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for an unknown name, and for a value outside its domain, with the index of the interface; the slip length
-    /// and the normal stress of the first interface are units, and 1.
+    /// [`Error::Parameter`] for an unknown name, and for a value outside its domain, with the index of the interface.
     pub fn new(law: &str, constants: [InterfaceConstants; 2], damping: f64) -> Result<Self> {
+        Self::in_unit(law, constants, damping, None)
+    }
+
+    /// The laws with these constants and this damping, with stress in the same unit.
+    ///
+    /// # Errors
+    /// As [`UnequalLaws::new`].
+    pub fn with(&self, constants: [InterfaceConstants; 2], damping: f64) -> Result<Self> {
+        Self::in_unit(self.name(), constants, damping, self.unit)
+    }
+
+    /// The laws with stress in a sigma of this a, whatever a_1 is.
+    ///
+    /// # Errors
+    /// As [`UnequalLaws::new`].
+    pub fn measured_in(&self, direct_effect: f64) -> Result<Self> {
+        let unit = Some(positive("direct_effect", direct_effect)?);
+        Self::in_unit(self.name(), self.constants, self.damping, unit)
+    }
+
+    fn in_unit(
+        law: &str,
+        constants: [InterfaceConstants; 2],
+        damping: f64,
+        unit: Option<f64>,
+    ) -> Result<Self> {
         let mut laws = Vec::with_capacity(constants.len());
         for (i, own) in constants.iter().enumerate() {
             let indexed = |error| of_interface(error, i + 1);
@@ -118,22 +146,14 @@ impl UnequalLaws {
                 ("normal_stress", own.normal_stress),
             ] {
                 positive(name, value).map_err(indexed)?;
-                if i == 0 && value != 1.0 {
-                    let must = "1: it is the unit";
-                    return Err(of_interface(Error::parameter(name, value, must), 1));
-                }
             }
             let heals = AnyLaw::named(law, Parameters::heslot_1994())?.bounds_state();
-            let (parameters, factors) = in_units_of_first(
-                &constants[0].into(),
-                &(*own).into(),
-                (damping, i == 0),
-                heals,
-            );
+            let unit = unit.or((i > 0).then_some(constants[0].direct_effect));
+            let (parameters, factors) = in_units(unit, &(*own).into(), damping, heals);
             let [stress_factor, slip_rate_factor] = factors;
             let numbers = [parameters.gamma0, parameters.beta, stress_factor];
             if !numbers.iter().all(|x| x.is_normal()) {
-                let what = "ratios to the first interface that doubles hold";
+                let what = "a value whose ratio to that of the first interface is within the range of doubles";
                 return Err(of_interface(
                     Error::parameter("direct_effect", own.direct_effect, what),
                     i + 1,
@@ -148,6 +168,7 @@ impl UnequalLaws {
         Ok(UnequalLaws {
             constants,
             damping,
+            unit,
             laws: [laws[0], laws[1]],
         })
     }
@@ -157,12 +178,17 @@ impl UnequalLaws {
         &self.constants
     }
 
-    /// eta V*/(a_1 sigma_1).
+    /// eta V*/(a sigma).
     pub fn damping(&self) -> f64 {
         self.damping
     }
 
-    /// The law of each interface in the units of the first.
+    /// The a of the unit of stress.
+    pub fn unit_of_stress(&self) -> f64 {
+        self.unit.unwrap_or(self.constants[0].direct_effect)
+    }
+
+    /// The law of each interface in the common units.
     pub fn laws(&self) -> &[ScaledLaw; 2] {
         &self.laws
     }
@@ -181,8 +207,10 @@ impl UnequalLaws {
     ) -> [ScaledLaw<Free<T>>; 2] {
         std::array::from_fn(|i| {
             let heals = self.laws[i].law.bounds_state();
-            let (made, factors) =
-                in_units_of_first(&constants[0], &constants[i], (damping, i == 0), heals);
+            let unit = self.unit.map(T::constant);
+            let [_, _, a_1, ..] = constants[0];
+            let unit = unit.or((i > 0).then_some(a_1));
+            let (made, factors) = in_units(unit, &constants[i], damping, heals);
             let [stress_factor, slip_rate_factor] = factors.map(Free);
             let parameters = Parameters::from([
                 made.beta,
@@ -222,19 +250,17 @@ impl Rounded for UnequalLaws {
     }
 }
 
-/// The parameters of a law in u = v/l, and q and l; of the first interface q is 1/n whatever its a is.
-fn in_units_of_first<T: Real>(
-    first: &[T; COUNT],
+/// The parameters of a law in u = v/l, and q and l. Without the a of a unit of stress the unit has the interface's own.
+fn in_units<T: Real>(
+    unit: Option<T>,
     own: &[T; COUNT],
-    (damping, is_first): (T, bool),
+    damping: T,
     heals_in_finite_time: bool,
 ) -> (Parameters<T>, [T; 2]) {
-    let [_, _, a_1, ..] = *first;
     let [healing_time, residual_strength, a, b, a_v, l, n] = *own;
-    let stress_factor = if is_first {
-        T::constant(1.0) / n
-    } else {
-        a_1 / (n * a)
+    let stress_factor = match unit {
+        None => T::constant(1.0) / n,
+        Some(unit) => unit / (n * a),
     };
     let parameters = Parameters {
         beta: b / a,

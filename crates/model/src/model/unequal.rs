@@ -38,7 +38,7 @@ pub struct UnequalInterfaces {
 }
 
 /// All names of parameters; a system has those of the constants that its law has.
-const NAMES: [&str; 20] = [
+const NAMES: [&str; 24] = [
     "driving",
     "stiffness",
     "damping",
@@ -57,7 +57,11 @@ const NAMES: [&str; 20] = [
     "reference_friction",
     "reference_friction_1",
     "reference_friction_2",
+    "slip_length",
+    "slip_length_1",
     "slip_length_2",
+    "normal_stress",
+    "normal_stress_1",
     "normal_stress_2",
 ];
 
@@ -162,7 +166,7 @@ impl UnequalInterfaces {
                 }
             }
         }
-        other.laws = UnequalLaws::new(self.laws.name(), constants.map(Into::into), damping)?;
+        other.laws = self.laws.with(constants.map(Into::into), damping)?;
         Ok(other)
     }
 

@@ -60,7 +60,8 @@ impl AnySystem {
         program: Option<&Program>,
     ) -> Result<Self> {
         let kind = match (formulas, program) {
-            (Some(mut model), program) => {
+            (Some(model), program) => {
+                let mut model = model.without_units()?;
                 if let Some(program) = program {
                     model.programmed(program)?;
                 }

@@ -3,7 +3,7 @@
 use super::branch::{BranchKind, BranchParameter};
 use super::ensemble::EnsembleOptions;
 use super::following::SYMMETRIES;
-use super::general::{SlabSubject, plane};
+use super::general::{SlabSubject, by_name, ends, plane};
 use super::locus::CurveChoice;
 use super::options::{ModelOptions, Names, OutputOptions, count, number};
 use super::orbit::SECOND_METHOD;
@@ -160,13 +160,22 @@ impl BranchOptions {
             && many_and_equal(&self.model)?)
     }
 
+    /// The model, with a value in the range for a free parameter that SI units are made of.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for what `set` says.
+    pub fn reference(&self) -> Result<ModelOptions> {
+        let along = self.along.as_deref().unwrap_or("driving");
+        self.model.within(&[(along, self.from.zip(self.to))])
+    }
+
     /// The interfaces, where branches are followed in any parameter: they differ, or neither V_H nor K varies.
     ///
     /// # Errors
     /// Those of the system; [`Error::Input`] for places of a search that equilibria do without.
     pub fn any_parameter(&self) -> Result<Option<SlabSubject>> {
         let along = self.along.as_deref().unwrap_or("driving");
-        let system = System::new(&self.model)?;
+        let system = System::new(&self.reference()?)?;
         if system.unequal.is_none() && ["driving", "stiffness"].contains(&along) {
             return Ok(None);
         }
@@ -209,13 +218,27 @@ impl LocusOptions {
             && many_and_equal(&self.model)?)
     }
 
+    /// The model, with values in their ranges for free parameters that SI units are made of.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for ranges and for what `set` says.
+    pub fn reference(&self) -> Result<ModelOptions> {
+        let names = plane(self.plane.as_deref().unwrap_or("driving,stiffness"))?;
+        let ranges = by_name("range", &self.range, names)?;
+        let range = |i: usize| {
+            let range = ranges[i].map(|text| ends(names[i], text));
+            Ok((names[i], range.transpose()?))
+        };
+        self.model.within(&[range(0)?, range(1)?])
+    }
+
     /// The interfaces, where curves are followed in any plane: they differ, or not both V_H and K vary.
     ///
     /// # Errors
     /// Those of the system, and of [`plane`].
     pub fn any_parameter(&self) -> Result<Option<SlabSubject>> {
         let names = plane(self.plane.as_deref().unwrap_or("driving,stiffness"))?;
-        let system = System::new(&self.model)?;
+        let system = System::new(&self.reference()?)?;
         let loading = names.contains(&"driving") && names.contains(&"stiffness");
         if system.unequal.is_none() && loading {
             return Ok(None);

@@ -1,8 +1,10 @@
 //! `--set NAME=VALUE`: any parameter of the model by its name.
 
 use super::options::{ModelOptions, SlabOptions};
+use super::system::{HEALING_TIME, NORMAL_STRESS, REFERENCE_RATE, SLIP_LENGTH};
 use super::unequal::of_one;
 use twinslip::error::{Error, Result};
+use twinslip::friction::{AnyLaw, Law, Parameters};
 
 /// The names of the parameters that interfaces have, V_H and K first.
 pub(super) const NAMES: [&str; 10] = [
@@ -150,6 +152,60 @@ impl SlabOptions {
             "normal_stress" => put_in(&mut self.normal_stress, name, value),
             _ => Err(Error::no_parameter("set", name, &NAMES)),
         }
+    }
+}
+
+/// The parameters in SI that set units, with their defaults.
+const UNITS: [(&str, f64); 2] = [
+    ("slip_length", SLIP_LENGTH),
+    ("normal_stress", NORMAL_STRESS),
+];
+
+impl ModelOptions {
+    /// The same with a value for each free parameter by which SI units are made: the geometric mean of the ends of its range. Units, and
+    /// what has a default in these, then do not change with the parameter.
+    ///
+    /// # Errors
+    /// As [`assignments`].
+    pub(super) fn within(&self, free: &[(&str, Option<(f64, f64)>)]) -> Result<ModelOptions> {
+        let mut model = self.clone();
+        for &(name, ends) in free {
+            let unit = UNITS
+                .iter()
+                .find(|(unit, _)| name.strip_suffix("_1").unwrap_or(name) == *unit);
+            let Some((_, default)) = unit.filter(|_| self.slab.si) else {
+                continue;
+            };
+            let middle = ends.map(|(from, to)| from.sqrt() * to.sqrt());
+            let middle = middle.filter(|x| *x > 0.0 && x.is_finite());
+            // A range that can't be is refused where it is read.
+            let middle = middle.unwrap_or(*default);
+            if !self.gives(name)? {
+                model.slab.text.set.push(format!("{name}={middle:?}"));
+            }
+            model.slab.hold_healing_time(name)?;
+        }
+        Ok(model)
+    }
+}
+
+impl SlabOptions {
+    /// Gives the healing time the default that it has at the default slip length, where that is the free parameter of this name.
+    ///
+    /// # Errors
+    /// As [`assignments`].
+    pub(super) fn hold_healing_time(&mut self, free: &str) -> Result<()> {
+        let heals = |law: AnyLaw| law.bounds_state();
+        if ["slip_length", "slip_length_1"].contains(&free)
+            && AnyLaw::named(&self.law, Parameters::heslot_1994()).is_ok_and(heals)
+            && !self.flag("healing_time")
+            && !self.sets("healing_time")?
+        {
+            let rate = self.reference_rate.unwrap_or(REFERENCE_RATE);
+            let length = self.slip_length.unwrap_or(SLIP_LENGTH);
+            self.healing_time = Some(HEALING_TIME * length / rate);
+        }
+        Ok(())
     }
 }
 

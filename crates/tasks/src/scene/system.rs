@@ -20,7 +20,7 @@ pub(super) const SLIP_LENGTH: f64 = 0.9e-6;
 /// V* in m/s of the paper.
 pub(super) const REFERENCE_RATE: f64 = 1e-6;
 /// sigma in Pa. The paper states none.
-const NORMAL_STRESS: f64 = 1e6;
+pub(super) const NORMAL_STRESS: f64 = 1e6;
 /// R of the paper.
 pub(super) const HEALING_TIME: f64 = 100.0;
 /// c of the paper.
@@ -296,6 +296,33 @@ impl System {
         Ok((system, loading))
     }
 
+    /// The same interfaces with these units of stress, length and time, which are in SI and have the same V*.
+    ///
+    /// # Errors
+    /// Those of [`UnequalLaws::new`].
+    pub(super) fn measured_in(self, units: &Units) -> Result<Self> {
+        if self.units == *units {
+            return Ok(self);
+        }
+        let ratio = |quantity| self.units.factor(quantity) / units.factor(quantity);
+        let constants = self.constants.map(|own| InterfaceConstants {
+            healing_time: own.healing_time * ratio(Quantity::Time),
+            slip_length: own.slip_length * ratio(Quantity::Length),
+            normal_stress: own.normal_stress * ratio(Quantity::NormalStress),
+            ..own
+        });
+        let damping = self.law.damping() * ratio(Quantity::Damping);
+        let unit = units.factor(Quantity::Stress) / units.factor(Quantity::NormalStress);
+        let laws = UnequalLaws::new(self.law.name(), constants, damping)?.measured_in(unit)?;
+        Ok(System {
+            unequal: Some(laws),
+            constants,
+            stiffness: self.stiffness.map(|k| k * ratio(Quantity::Stiffness)),
+            units: *units,
+            ..self
+        })
+    }
+
     /// Tells that a parameter varies: it has no one value.
     pub(super) fn vary(&mut self, name: &str) {
         self.echo.insert(name.to_owned(), Value::Null);
@@ -330,6 +357,7 @@ impl System {
     /// The steady stress at V_H over the number of interfaces; of interfaces that differ the mean of theirs.
     pub fn steady_stress(&self, driving: f64) -> f64 {
         match &self.unequal {
+            Some(laws) if self.interfaces == 1 => steady_stress(&laws.laws()[0], driving),
             Some(laws) => laws.half_driving_stress(driving),
             None => steady_stress(&self.law, driving / self.interfaces as f64),
         }
@@ -399,7 +427,8 @@ fn common(options: &SlabOptions, first: &SlabOptions) -> [f64; 7] {
     ]
 }
 
-fn scales(options: &SlabOptions) -> Result<Scales> {
+/// The units of SI by these options.
+pub(super) fn scales(options: &SlabOptions) -> Result<Scales> {
     Scales::new(
         options.a(),
         options.slip_length.unwrap_or(SLIP_LENGTH),

@@ -16,6 +16,8 @@ pub enum Quantity {
     Length,
     /// Time.
     Time,
+    /// A healing time, which stays in seconds in SI whatever the unit of times is.
+    HealingTime,
     /// State psi: a number in (0, 1], or a time for the laws that do not bound it.
     State,
     /// ln psi.
@@ -30,6 +32,22 @@ pub enum Quantity {
     NormalStress,
     /// A friction coefficient, a ratio, a name.
     Number,
+}
+
+impl Quantity {
+    /// What a parameter of interfaces measures, by its name; one of one interface ends in its number.
+    pub fn of_parameter(name: &str) -> Self {
+        let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
+        match stem.strip_suffix('_').unwrap_or(name) {
+            "driving" => Quantity::SlipRate,
+            "stiffness" => Quantity::Stiffness,
+            "damping" => Quantity::Damping,
+            "healing_time" => Quantity::HealingTime,
+            "slip_length" => Quantity::Length,
+            "normal_stress" => Quantity::NormalStress,
+            _ => Quantity::Number,
+        }
+    }
 }
 
 /// A unit of time beside SI.
@@ -137,6 +155,11 @@ impl Units {
         }
     }
 
+    /// Whether psi is bounded: else it is a time.
+    pub(super) fn bound_states(&self) -> bool {
+        !self.state_is_time
+    }
+
     /// Whether the numbers are in SI.
     pub fn si(&self) -> bool {
         self.scales.is_some()
@@ -152,6 +175,7 @@ impl Units {
             Quantity::SlipRate => scales.slip_rate,
             Quantity::Length => scales.length,
             Quantity::Time => self.time,
+            Quantity::HealingTime => scales.time,
             Quantity::Stiffness => scales.stiffness,
             Quantity::Growth => 1.0 / self.time,
             Quantity::Damping => scales.stress / scales.slip_rate,
@@ -172,16 +196,18 @@ impl Units {
         match quantity {
             Quantity::LogState => x + self.factor(Quantity::State).ln(),
             Quantity::Time if self.si() => {
-                let t = x * self.factor(quantity);
-                let round = format!("{t:.14e}").parse().unwrap_or(t);
-                if self.inward(quantity, round) == x {
-                    round
-                } else {
-                    t
-                }
+                let given = self.as_given(quantity, x);
+                given.unwrap_or(x * self.factor(quantity))
             }
             _ => x * self.factor(quantity),
         }
+    }
+
+    /// Of the numbers in the user's units that are x inward, the one of 15 digits, where there is one.
+    fn as_given(&self, quantity: Quantity, x: f64) -> Option<f64> {
+        let outward = x * self.factor(quantity);
+        let round = format!("{outward:.14e}").parse().ok()?;
+        (self.inward(quantity, round) == x).then_some(round)
     }
 
     /// From the user's units to dimensionless.
@@ -198,14 +224,20 @@ impl Units {
         longest.map(|h| self.outward(Quantity::Time, h))
     }
 
-    /// A value and the bound on its error, in the user's units; conversion in and out costs a few roundings more.
+    /// A value and the bound on its error, in the user's units; conversion in and out costs a few roundings more. What a user has given is
+    /// exact, and comes back as it was given.
     pub fn outward_uncertain(&self, quantity: Quantity, x: Uncertain) -> Uncertain {
         /// Roundings of the inputs, of the scales and of the product, generously.
         const CONVERSION_ULPS: f64 = 16.0;
-        let value = self.outward(quantity, x.value);
         if !self.si() {
             return x;
         }
+        if x.uncertainty == 0.0
+            && let Some(given) = self.as_given(quantity, x.value)
+        {
+            return Uncertain::new(given, 0.0);
+        }
+        let value = self.outward(quantity, x.value);
         let rounding = CONVERSION_ULPS * f64::EPSILON * value.abs();
         Uncertain::new(value, x.uncertainty * self.factor(quantity) + rounding)
     }
@@ -237,6 +269,8 @@ impl Units {
             Quantity::Length => "L",
             Quantity::Time if si => self.time_unit.name,
             Quantity::Time => "L/V*",
+            Quantity::HealingTime if si => "s",
+            Quantity::HealingTime => "L/V*",
             Quantity::Stiffness if si => "Pa/m",
             Quantity::Stiffness => "a sigma/L",
             Quantity::Growth if si => self.time_unit.inverse,

@@ -26,20 +26,25 @@ impl Command {
             _ => None,
         };
         // What is wrong with `set` is said where it is used.
-        slab.of_a_fault(driving).ok().flatten()
+        let free = match self {
+            Command::Branch(options) => options.along.as_deref(),
+            _ => None,
+        };
+        slab.of_a_fault(driving, free).ok().flatten()
     }
 }
 
 impl SlabOptions {
     /// Which constants of a built-in law are the paper's although other numbers are those of a fault.
-    fn of_a_fault(&self, driving: Option<f64>) -> Result<Option<String>> {
+    fn of_a_fault(&self, driving: Option<f64>, free: Option<&str>) -> Result<Option<String>> {
         let built_in = AnyLaw::NAMES.contains(&self.law.as_str());
         if !self.si || !built_in || self.text.system.is_some() {
             return Ok(None);
         }
         let given = |name: &str| -> Result<bool> {
             let indexed = format!("{name}_1");
-            Ok(self.flag(name) || self.sets(name)? || self.sets(&indexed)?)
+            let varies = free.is_some_and(|free| [name, indexed.as_str()].contains(&free));
+            Ok(varies || self.flag(name) || self.sets(name)? || self.sets(&indexed)?)
         };
         let mut faults = Vec::new();
         for name in ["slip_length", "normal_stress", "damping"] {

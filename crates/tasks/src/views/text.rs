@@ -51,8 +51,12 @@ pub fn text_equilibria_columns(model: &TextModel) -> Vec<Column<TextEquilibrium>
 /// The name of a system with the values of its parameters.
 pub fn with_parameters(model: &TextModel) -> String {
     let system = &model.system;
+    let quantity = |name: &str| match model.slab {
+        Some(_) => Quantity::of_parameter(name),
+        None => Number,
+    };
     let all = system.parameter_names().iter().zip(system.parameters());
-    let all: Vec<_> = all.map(|(name, x)| (*name, Number, *x)).collect();
+    let all: Vec<_> = all.map(|(name, x)| (*name, quantity(name), *x)).collect();
     titled(Some(model.name()), &all, model.units())
 }
 

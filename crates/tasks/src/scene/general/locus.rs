@@ -68,6 +68,16 @@ pub(in crate::scene) fn by_name<'o>(
     Ok(of)
 }
 
+/// Both ends of a range, the smaller one first.
+pub(in crate::scene) fn ends(name: &str, text: &str) -> Result<(f64, f64)> {
+    match numbers("range", &text.replace(':', ","))?[..] {
+        [a, b] => Ok((a.min(b), a.max(b))),
+        _ => Err(Error::Input(format!(
+            "`range` {name}={text} must be two numbers, A,B"
+        ))),
+    }
+}
+
 impl<'s> GeneralLocusPlan<'s> {
     /// Checks the options.
     ///
@@ -146,15 +156,7 @@ impl<'s> GeneralLocusPlan<'s> {
                         names[i]
                     )));
                 }
-                Some(text) => match numbers("range", &text.replace(':', ","))?[..] {
-                    [a, b] => (a.min(b), a.max(b)),
-                    _ => {
-                        return Err(Error::Input(format!(
-                            "`range` {}={text} must be two numbers, A,B",
-                            names[i]
-                        )));
-                    }
-                },
+                Some(text) => ends(names[i], text)?,
             };
             let at = at[i].map_or(Ok(Vec::new()), |text| numbers("at", text))?;
             Free::new(subject, ("in", names[i]), range, &at)

@@ -9,8 +9,8 @@ mod text;
 
 pub use branch::{GeneralBranchPlan, GeneralFound};
 pub use following::{Free, shown};
-pub(super) use locus::by_name;
 pub use locus::{GeneralLocusPlan, plane};
+pub(super) use locus::{by_name, ends};
 pub use row::{GeneralRow, RowKind};
 pub use slab::SlabSubject;
 pub use text::TextSubject;

@@ -14,9 +14,9 @@ use twinslip::friction::{AnyLaw, Law, Parameters, UnequalLaws, positive};
 use twinslip::integrate::AnyField;
 use twinslip::model::{AlikeInterfaces, Driven, Loading, UnequalInterfaces};
 use twinslip::orbit::{
-    ContinuationPoint, Coordinate, FoundOrbit, InitialGuess, InterfaceSystem, OrbitAccuracy,
-    OverInterfaces, OverLogarithms, ParametrisedField, Profile, Query, ShootingNodes, find,
-    find_either, find_unequal, profile_of,
+    ContinuationPoint, Coordinate, InitialGuess, InterfaceSystem, OrbitAccuracy, OverInterfaces,
+    OverLogarithms, ParametrisedField, Profile, Query, ShootingNodes, find, find_either,
+    find_unequal, profile_of,
 };
 
 /// Interfaces with V_H and K.
@@ -36,32 +36,34 @@ impl SlabSubject {
     /// Interfaces of which these parameters vary.
     ///
     /// # Errors
-    /// [`Error::Input`] in SI for a parameter that sets the units.
-    pub fn new(system: System, free: &[&str]) -> Result<Self> {
+    /// [`Error::Input`] for a parameter that is the unit of others, where these have no units.
+    pub fn new(mut system: System, free: &[&str]) -> Result<Self> {
         let laws = match system.unequal {
             Some(laws) => laws,
             None => UnequalLaws::new(system.law.name(), system.constants, system.law.damping())?,
         };
         // A law without damping has no parameter of this name.
         let laws = if free.contains(&"damping") && laws.damping() == 0.0 {
-            UnequalLaws::new(laws.name(), *laws.constants(), 1.0)?
+            laws.with(*laws.constants(), 1.0)?
         } else {
             laws
         };
-        if system.units.si()
-            && let Some(name) = free.iter().find(|name| SETS_UNITS.contains(name))
-        {
-            return Err(Error::Input(format!(
-                "`{name}` sets the unit of stress in SI, so that all else would change with it; leave `si` out"
-            )));
-        }
+        // In SI the units stay those of the reference values, whatever varies.
+        let laws = match system.units.si() {
+            true => laws.measured_in(system.direct_effect)?,
+            false => laws,
+        };
         for (name, others) in SCALES {
             let indexed = format!("{name}_1");
-            if let Some(free) = free.iter().find(|free| **free == name || **free == indexed) {
+            let of_first = free.iter().find(|free| **free == name || **free == indexed);
+            if let Some(free) = of_first.filter(|_| !system.units.si()) {
                 return Err(Error::Input(format!(
-                    "`{free}` scales all other numbers and cannot vary here; {others} in its place"
+                    "`{free}` is the unit of other numbers and cannot vary without `si`; {others} instead, or give values with units"
                 )));
             }
+        }
+        if system.units.si() {
+            free.iter().for_each(|name| system.vary(name));
         }
         let loading = Loading {
             driving: system.driving.unwrap_or(1.0),
@@ -101,22 +103,28 @@ impl SlabSubject {
         Ok(SlabSubject { orbit, ..self })
     }
 
-    /// Equal interfaces, with the damping that may vary.
-    fn slab(&self, interfaces: &UnequalInterfaces) -> Result<InterfaceSystem> {
-        let damping = interfaces.laws.damping();
+    /// Equal interfaces in units of their own, a_1 sigma_1 and L_1, with the damping that may vary.
+    fn slab(&self, interfaces: &UnequalInterfaces) -> Result<(InterfaceSystem, OwnUnits)> {
         let constants = interfaces.laws.constants()[0];
+        let own = OwnUnits::of(&interfaces.laws);
         let parameters = Parameters::new(
             constants.direct_effect,
             constants.evolution_effect,
             constants.reference_friction,
-            constants.healing_time,
+            constants.healing_time / own.time,
             constants.residual_strength,
         )?;
-        Ok(InterfaceSystem {
+        let damping = interfaces.laws.damping() / own.stress;
+        let Loading { driving, stiffness } = interfaces.loading;
+        let slab = InterfaceSystem {
             law: AnyLaw::named(interfaces.laws.name(), parameters.damped(damping)?)?,
             interfaces: self.system.interfaces,
-            loading: interfaces.loading,
-        })
+            loading: Loading {
+                driving,
+                stiffness: stiffness * own.time / own.stress,
+            },
+        };
+        Ok((slab, own))
     }
 
     /// There is one.
@@ -158,14 +166,60 @@ impl SlabSubject {
     }
 }
 
+/// The units of one interface, in those of the branch. V* is the unit of slip rates of both.
+#[derive(Debug, Clone, Copy)]
+struct OwnUnits {
+    /// a_1 sigma_1/(a sigma)
+    stress: f64,
+    /// L_1/L
+    time: f64,
+    /// ln of the unit of psi, which is L_1/V* where the law does not bound psi.
+    log_state: f64,
+}
+
+impl OwnUnits {
+    fn of(laws: &UnequalLaws) -> Self {
+        let first = laws.constants()[0];
+        let time = first.slip_length;
+        OwnUnits {
+            stress: first.normal_stress * (first.direct_effect / laws.unit_of_stress()),
+            time,
+            log_state: match laws.laws()[0].bounds_state() {
+                true => 0.0,
+                false => time.ln(),
+            },
+        }
+    }
+
+    /// tau and all ln psi.
+    fn outward(self, mut state: Vector) -> Vector {
+        state[0] *= self.stress;
+        state.iter_mut().skip(1).for_each(|w| *w += self.log_state);
+        state
+    }
+
+    /// tau and the ln psi of two interfaces, from the units of the branch.
+    fn inward(self, (stress, log_state): Point) -> Point {
+        (stress / self.stress, log_state.map(|w| w - self.log_state))
+    }
+
+    fn outward_orbit(self, orbit: ContinuationPoint) -> ContinuationPoint {
+        let ShootingNodes { nodes, durations } = orbit.shooting;
+        ContinuationPoint {
+            shooting: ShootingNodes {
+                nodes: nodes.into_iter().map(|node| self.outward(node)).collect(),
+                durations: durations.into_iter().map(|t| t * self.time).collect(),
+            },
+            at: orbit.at,
+        }
+    }
+}
+
 /// Parameters of the first interface by which all is dimensionless, and what may vary in their place.
 const SCALES: [(&str, &str); 2] = [
     ("slip_length", "vary `stiffness` and `healing_time`"),
     ("normal_stress", "vary `stiffness`"),
 ];
-
-/// Parameters that set the scales by which K and all stresses are dimensionless.
-const SETS_UNITS: [&str; 2] = ["direct_effect", "direct_effect_1"];
 
 /// A parameter that is held where this one varies.
 fn other_than(name: &str) -> &'static str {
@@ -179,18 +233,6 @@ fn other_than(name: &str) -> &'static str {
 /// Whether a parameter is of one of the interfaces.
 fn of_one(name: &str) -> bool {
     name.ends_with("_1") || name.ends_with("_2")
-}
-
-fn quantity(name: &str) -> Quantity {
-    match name {
-        "driving" => Quantity::SlipRate,
-        "stiffness" => Quantity::Stiffness,
-        "damping" => Quantity::Damping,
-        "slip_length_2" => Quantity::Length,
-        "normal_stress_2" => Quantity::NormalStress,
-        _ if name.starts_with("healing_time") => Quantity::Time,
-        _ => Quantity::Number,
-    }
 }
 
 impl Described for SlabSubject {
@@ -210,7 +252,10 @@ impl Subject for SlabSubject {
             true => alike.names(),
             false => self.interfaces.names(),
         };
-        names.iter().map(|&name| (name, quantity(name))).collect()
+        names
+            .iter()
+            .map(|&name| (name, Quantity::of_parameter(name)))
+            .collect()
     }
 
     fn value(&self, name: &str) -> Result<f64> {
@@ -248,7 +293,7 @@ impl Subject for SlabSubject {
         if !self.equal {
             return None;
         }
-        let slab = self.slab(&self.interfaces).ok()?;
+        let (slab, _) = self.slab(&self.interfaces).ok()?;
         let (names, held) = match *names {
             [first, second] => ([first, second], None),
             [only] => {
@@ -272,9 +317,9 @@ impl Subject for SlabSubject {
     fn equilibria(&self, values: &[(&str, f64)]) -> Result<Vec<Vector>> {
         let interfaces = self.at(values)?;
         if self.is_single() {
-            let slab = self.slab(&interfaces)?;
+            let (slab, own) = self.slab(&interfaces)?;
             let state = vec![slab.steady_stress(), slab.steady_log_state()];
-            return Ok(vec![Vector::from_vec(state)]);
+            return Ok(vec![own.outward(Vector::from_vec(state))]);
         }
         let found = unequal_steady_states(&interfaces.laws, interfaces.loading.driving)?;
         let state = |one: &twinslip::equilibrium::Equilibrium| {
@@ -287,31 +332,38 @@ impl Subject for SlabSubject {
         let Some((start, period)) = self.orbit else {
             return Ok(None);
         };
-        let begin = InitialGuess::At { start, period };
         let accuracy = OrbitAccuracy::unchecked();
         let interfaces = self.at(values)?;
-        let found = if self.is_single() {
-            let query = Query {
-                symmetry: Symmetry::Symmetric,
-                begin,
-            };
-            find(&self.slab(&interfaces)?, &query, &accuracy)?
-        } else {
-            find_unequal(&interfaces, begin, &accuracy)?
+        if !self.is_single() {
+            let begin = InitialGuess::At { start, period };
+            let found = find_unequal(&interfaces, begin, &accuracy)?;
+            return Ok(Some(found.orbit.beginning()));
+        }
+        let (slab, own) = self.slab(&interfaces)?;
+        let query = Query {
+            symmetry: Symmetry::Symmetric,
+            begin: InitialGuess::At {
+                start: own.inward(start),
+                period: period.map(|t| t / own.time),
+            },
         };
-        Ok(Some(found.orbit.beginning()))
+        let found = find(&slab, &query, &accuracy)?;
+        Ok(Some(own.outward_orbit(found.orbit.beginning())))
     }
 
     fn orbits(&self, values: &[(&str, f64)]) -> Vec<ContinuationPoint> {
-        let search = || -> Result<_> {
+        let search = || -> Result<Vec<ContinuationPoint>> {
             let interfaces = self.at(values)?;
             let accuracy = OrbitAccuracy::unchecked();
-            match self.equal || self.is_single() {
-                true => find_either(&self.slab(&interfaces)?, &accuracy),
-                false => find_unequal(&interfaces, InitialGuess::Anywhere, &accuracy),
+            if !self.equal && !self.is_single() {
+                let found = find_unequal(&interfaces, InitialGuess::Anywhere, &accuracy)?;
+                return Ok(found.beginnings());
             }
+            let (slab, own) = self.slab(&interfaces)?;
+            let found = find_either(&slab, &accuracy)?.beginnings().into_iter();
+            Ok(found.map(|orbit| own.outward_orbit(orbit)).collect())
         };
-        search().map_or(Vec::new(), FoundOrbit::beginnings)
+        search().unwrap_or_default()
     }
 
     fn coordinate(&self, name: &str, ends: [f64; 2]) -> Result<Coordinate> {
@@ -327,13 +379,15 @@ impl Subject for SlabSubject {
 
     fn default_range(&self, name: &str) -> Option<(f64, f64)> {
         let (from, to) = following::loading_range(name)?;
-        let outward = |x| self.units().outward(quantity(name), x);
+        let outward = |x| self.units().outward(Quantity::of_parameter(name), x);
         Some((outward(from), outward(to)))
     }
 
     fn always_told(&self) -> Vec<(&'static str, Quantity)> {
         let names = ["driving", "stiffness"];
-        names.map(|name| (name, quantity(name))).to_vec()
+        names
+            .map(|name| (name, Quantity::of_parameter(name)))
+            .to_vec()
     }
 
     fn dimension(&self) -> usize {

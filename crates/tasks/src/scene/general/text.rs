@@ -57,7 +57,8 @@ impl TextSubject {
         let period = search
             .period_guess
             .map(|period| positive("period-guess", period))
-            .transpose()?;
+            .transpose()?
+            .map(|period| model.units().inward(Quantity::Time, period));
         let orbit = match start.filter(|_| orbits) {
             Some(start) => Some((model.start(Some(start))?, period)),
             None if period.is_some() => {
@@ -117,7 +118,12 @@ impl TextSubject {
 impl Subject for TextSubject {
     fn parameters(&self) -> Vec<(&'static str, Quantity)> {
         let names = self.model.system.parameter_names().iter();
-        names.map(|name| (*name, Quantity::Number)).collect()
+        let slides = self.model.slab.is_some();
+        let quantity = |name: &str| match slides {
+            true => Quantity::of_parameter(name),
+            false => Quantity::Number,
+        };
+        names.map(|name| (*name, quantity(name))).collect()
     }
 
     fn value(&self, name: &str) -> Result<f64> {
@@ -207,7 +213,9 @@ impl Subject for TextSubject {
     fn default_range(&self, name: &str) -> Option<(f64, f64)> {
         // Of interfaces as of those that are built in.
         self.model.slab.as_ref()?;
-        following::loading_range(name)
+        let (from, to) = following::loading_range(name)?;
+        let outward = |x| self.units().outward(Quantity::of_parameter(name), x);
+        Some((outward(from), outward(to)))
     }
 
     fn always_told(&self) -> Vec<(&'static str, Quantity)> {
@@ -263,14 +271,21 @@ impl Subject for TextSubject {
     }
 
     fn numbers(&self, kind: RowKind) -> Vec<(String, Quantity)> {
-        let states = self.model.system.states().iter();
-        let named = |name: String| (name, Quantity::Number);
+        let states = self.model.system.states().iter().enumerate();
+        let quantity = |place| match (&self.model.slab, place) {
+            (None, _) => Quantity::Number,
+            (Some(_), 0) => Quantity::Stress,
+            (Some(_), _) => Quantity::LogState,
+        };
         match kind.orbits {
             true => states
-                .flat_map(|name| [format!("{name}_min"), format!("{name}_max")])
-                .map(named)
+                .flat_map(|(place, name)| {
+                    ["min", "max"].map(|end| (format!("{name}_{end}"), quantity(place)))
+                })
                 .collect(),
-            false => states.map(|name| named((*name).to_owned())).collect(),
+            false => states
+                .map(|(place, name)| ((*name).to_owned(), quantity(place)))
+                .collect(),
         }
     }
 

@@ -10,10 +10,15 @@ use twinslip::sweep::Range;
 
 /// A grid has no more axes.
 const MOST: usize = 2;
-/// What other numbers are measured in.
-const UNITS: [&str; 2] = ["slip_length", "normal_stress"];
-/// What in SI is in the unit of stress.
-const IN_UNIT_OF_STRESS: &str = "direct_effect";
+/// In SI the unit of stress changes with it.
+const DIRECT_EFFECT: &str = "direct_effect";
+/// What units are made of, of the first interface.
+const UNITS: [&str; 3] = ["slip_length", "normal_stress", DIRECT_EFFECT];
+
+/// Whether the units of other numbers are made of a parameter.
+fn sets_units(name: &str) -> bool {
+    UNITS.contains(&name.strip_suffix("_1").unwrap_or(name))
+}
 
 /// The parameters that vary, the first fastest, and of V_H and K those that are fixed; all in the user's units.
 #[derive(Debug, Clone, PartialEq)]
@@ -130,15 +135,10 @@ impl Axes {
             if own.is_none() && !NAMES.contains(&name.as_str()) {
                 return Err(Error::unknown("grid", name, &NAMES));
             }
-            let of_first = own.is_none_or(|(_, interface)| interface == 0);
-            let is = |base: &str| name == base || *name == format!("{base}_1");
-            if of_first && UNITS.iter().any(|base| is(base)) {
-                return refused(name, "it is the unit of other numbers, and can't vary");
-            }
-            if slab.si && of_first && is(IN_UNIT_OF_STRESS) {
+            if !slab.si && sets_units(name) && !name.starts_with(DIRECT_EFFECT) {
                 return refused(
                     name,
-                    "with `si` it is in the unit of stress; leave `si` out",
+                    "without `si` it is the unit of other numbers and cannot vary; give values with units",
                 );
             }
         }

@@ -9,7 +9,7 @@ use twinslip::error::Result;
 use twinslip::field::Vector;
 use twinslip::friction::{Formulas, Law, beside};
 use twinslip::integrate::{AnyField, MotionUnits};
-use twinslip::model;
+use twinslip::model::{self, AlikeInterfaces};
 use twinslip::number::polynomial::Crossing;
 use twinslip::section::{Surface, usual_patience};
 use twinslip::sweep::{
@@ -33,23 +33,40 @@ impl InterfacePoints {
     /// # Errors
     /// Those of the options at the ends of the axes.
     pub fn new(slab: &SlabOptions, axes: &Axes) -> Result<(Self, System)> {
+        let mut slab = slab.clone();
+        for name in &axes.names {
+            slab.hold_healing_time(name)?;
+        }
         let mut points = InterfacePoints {
-            slab: slab.clone(),
+            slab,
             axes: axes.clone(),
             units: Units::none(),
         };
-        let mut first = None;
+        let mut systems = Vec::new();
         for corner in axes.corners() {
-            let system = points.system(&corner)?;
+            let system = points.in_own_units(&corner)?;
             system.loading()?;
-            first.get_or_insert(system);
+            systems.push(system);
         }
-        let system = first.expect("there is a corner");
+        // All points have the units of one, of that with the least unit of stress: then no error of a stress is larger than asked for.
+        let unit = |system: &System| system.units.factor(Quantity::Stress);
+        let least = systems.into_iter().reduce(|least, other| {
+            if unit(&other) < unit(&least) {
+                other
+            } else {
+                least
+            }
+        });
+        let system = least.expect("there is a corner");
         points.units = system.units;
         Ok((points, system))
     }
 
     fn system(&self, values: &[f64]) -> Result<System> {
+        self.in_own_units(values)?.measured_in(&self.units)
+    }
+
+    fn in_own_units(&self, values: &[f64]) -> Result<System> {
         let mut slab = self.slab.clone();
         let (mut driving, mut stiffness) = (self.axes.driving, self.axes.stiffness);
         for (name, value) in self.axes.names.iter().zip(values) {
@@ -96,7 +113,11 @@ impl SystemPoints for InterfacePoints {
         let system = self.system(values)?;
         let loading = system.loading()?;
         let field = match (system.interfaces, system.unequal(loading)) {
-            (1, _) => AnyField::new::<2>(model::single_interface(system.law, loading)),
+            (1, None) => AnyField::new::<2>(model::single_interface(system.law, loading)),
+            (1, Some(interfaces)) => AnyField::new::<2>(Box::new(AlikeInterfaces {
+                interfaces,
+                count: 1,
+            })),
             (_, Some(unequal)) => AnyField::new::<3>(Box::new(unequal)),
             (_, None) => return Ok(equal_interfaces(system.law, loading, start, random)),
         };
@@ -123,7 +144,7 @@ impl SystemPoints for InterfacePoints {
             field,
             start: Vector::from_vec(begin),
             section: SectionPlace::Known(surface, patience),
-            equal_parts: false,
+            equal_parts: system.interfaces == 2 && system.constants[0] == system.constants[1],
             lane: None,
             enclosed: None,
         })

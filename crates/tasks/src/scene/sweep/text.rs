@@ -4,7 +4,9 @@ use super::axes::Axes;
 use super::interfaces::{PATIENCE, is_loading};
 use super::options::SweepOptions;
 use crate::scene::options::ModelOptions;
+use crate::scene::system::Described;
 use crate::scene::text::TextModel;
+use crate::scene::units::Quantity;
 use std::borrow::Cow;
 use twinslip::error::{Error, Result};
 use twinslip::field::Vector;
@@ -31,12 +33,17 @@ impl TextPoints {
     /// # Errors
     /// Those of the law's file and of the options.
     pub fn of_law(options: &SweepOptions, axes: &Axes) -> Result<Option<Self>> {
+        let mut free = vec!["driving", "stiffness"];
+        free.extend(axes.names.iter().map(String::as_str));
         let mut asked = ModelOptions {
             driving: axes.driving,
             stiffness: axes.stiffness,
             slab: options.slab.clone(),
         };
-        let Some(model) = TextModel::of(&asked, &["driving", "stiffness"])? else {
+        for name in &axes.names {
+            asked.slab.hold_healing_time(name)?;
+        }
+        let Some(model) = TextModel::of(&asked, &free)? else {
             return Ok(None);
         };
         axes.needs_loading()?;
@@ -57,7 +64,7 @@ impl TextPoints {
                 asked.slab.text.set.push(format!("{name}={:?}", range.from));
             }
         }
-        let model = TextModel::of(&asked, &["driving", "stiffness"])?;
+        let model = TextModel::of(&asked, &free)?;
         Ok(model.map(|model| TextPoints {
             model,
             names: axes.names.clone(),
@@ -156,12 +163,13 @@ impl SystemPoints for TextPoints {
         }
         let system = &self.model.system;
         let fixed = system.parameter_names().iter().zip(system.parameters());
+        let units = self.model.units();
         let of = |name: &str| {
             let varies = axes.clone().find(|(known, _)| *known == name);
+            let varies =
+                varies.map(|(_, value)| units.inward(Quantity::of_parameter(name), *value));
             let fixed = || fixed.clone().find(|(known, _)| **known == name);
-            varies
-                .map(|(_, value)| *value)
-                .or_else(|| fixed().map(|(_, value)| *value))
+            varies.or_else(|| fixed().map(|(_, value)| *value))
         };
         let loading = ["driving", "stiffness"].into_iter().filter_map(of);
         let others = axes.clone().filter(|(name, _)| !is_loading(name));
@@ -171,7 +179,11 @@ impl SystemPoints for TextPoints {
     fn at(&self, values: &[f64], start: usize, mut random: RandomStart) -> Result<SystemPoint> {
         let mut system = self.model.system.clone();
         for (name, &value) in self.names.iter().zip(values) {
-            system.set(name, value)?;
+            let quantity = match self.model.slab {
+                Some(_) => Quantity::of_parameter(name),
+                None => Quantity::Number,
+            };
+            system.set(name, self.model.units().inward(quantity, value))?;
         }
         let mut units = MotionUnits::given(system.states().len());
         let (begin, section, equal_parts) = match (&self.begins, &self.model.slab) {

@@ -80,7 +80,71 @@ impl LawFile {
         self.parameters.push((DAMPING.into(), damping));
         Ok(self)
     }
+
+    /// The law of an interface whose slip length and normal stress are l and n in units of others: two parameters more, both 1. With q =
+    /// a/(n a_i), of which a is that of the unit of stress, the interface slides at law(q tau), and its state evolves in units of its own
+    /// time l, in which R is R/l and, where the law does not bound psi, psi is psi/l.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where there are too many operations.
+    pub(super) fn scaled(mut self, unit: f64, bounds_state: bool) -> Result<Self> {
+        let [slip_rate, evolution] = [0, 1].map(|which| {
+            let mut builder = Builder::default();
+            let own = self.own_units(&mut builder, unit)?;
+            let Own { l, q, parameters } = &own;
+            let (first, psi) = (builder.variable(0)?, builder.variable(1)?);
+            let psi = match bounds_state {
+                true => psi,
+                false => builder.binary(Binary::Quotient, psi, *l)?,
+            };
+            let made = if which == 0 {
+                let tau = builder.binary(Binary::Product, first, *q)?;
+                builder.insert(&self.slip_rate, &[tau, psi], parameters)?[0]
+            } else {
+                let rate = builder.insert(&self.evolution, &[first, psi], parameters)?[0];
+                match bounds_state {
+                    true => builder.binary(Binary::Quotient, rate, *l)?,
+                    false => rate,
+                }
+            };
+            Ok(builder.complete(vec![made]))
+        });
+        (self.slip_rate, self.evolution) = (slip_rate?, evolution?);
+        let more = SCALES.map(|name| (name.to_owned(), 1.0));
+        self.parameters.extend(more);
+        Ok(self)
+    }
+
+    fn own_units(&self, builder: &mut Builder, unit: f64) -> Result<Own> {
+        let count = self.parameters.len();
+        let parameters = (0..count).map(|i| builder.parameter(i));
+        let mut parameters = parameters.collect::<Result<Vec<Place>>>()?;
+        let (l, n) = (builder.parameter(count)?, builder.parameter(count + 1)?);
+        let unit = builder.number(unit)?;
+        let stress = match self.place("direct_effect") {
+            Some(a) => builder.binary(Binary::Product, n, parameters[a])?,
+            None => n,
+        };
+        let q = builder.binary(Binary::Quotient, unit, stress)?;
+        if let Some(i) = self.place("healing_time") {
+            parameters[i] = builder.binary(Binary::Quotient, parameters[i], l)?;
+        }
+        if let Some(i) = self.damping {
+            parameters[i] = builder.binary(Binary::Product, parameters[i], q)?;
+        }
+        Ok(Own { l, q, parameters })
+    }
 }
+
+/// l, q, and the parameters of a law in units of its own.
+struct Own {
+    l: Place,
+    q: Place,
+    parameters: Vec<Place>,
+}
+
+/// The parameters that an interface has where the units are not its own.
+pub(super) const SCALES: [&str; 2] = ["slip_length", "normal_stress"];
 
 fn read<'a>(reader: Reader<'a>, table: &'a DeTable<'_>) -> Result<Tables<'a>> {
     const KEYS: [&str; 5] = ["name", "slip_rate", "evolution", "parameters", "where"];

@@ -13,6 +13,7 @@ mod motion;
 mod options;
 mod orbit;
 mod slab;
+mod slab_options;
 mod slider;
 
 pub use equilibria::{SearchPlace, TextEquilibria, TextEquilibriaPlan, TextEquilibrium};

@@ -1,7 +1,7 @@
 //! A user-defined system with what the command line says about it.
 
 use super::file::{SystemFile, TIME, TimeUse};
-use super::law_file::{DRIVING, LawFile, STIFFNESS};
+use super::law_file::{DRIVING, LawFile, SCALES, STIFFNESS};
 use super::options::TextOptions;
 use super::slab::TextSlab;
 use crate::scene::file::read_bounded;
@@ -60,14 +60,29 @@ impl TextModel {
             None => return Self::read(&options.slab.text),
         };
         let (slab, system) = TextSlab::new(law, options, free)?;
+        let mut echo = slab.echo(&system, &options.slab);
+        // The unit of what varies is any value of it.
+        for name in free.iter().filter(|name| SCALES.contains(name)) {
+            echo.insert((*name).to_owned(), Value::Null);
+        }
         Ok(Some(TextModel {
-            echo: slab.echo(&system),
+            echo,
             time: None,
             start: Vec::new(),
-            units: Units::none(),
+            units: slab.units,
             slab: Some(slab),
             system,
         }))
+    }
+
+    /// This model, of a command that knows no units of clusters.
+    pub(in crate::scene) fn without_units(self) -> Result<Self> {
+        match self.units.si() {
+            false => Ok(self),
+            true => Err(Error::Input(
+                "`si`: runs, returns and orbits of clusters, and of more than 2 interfaces, are computed without units; equilibria, branch, locus, sweep and law have them".into(),
+            )),
+        }
     }
 
     /// The system that the options name; `None` where they name none.

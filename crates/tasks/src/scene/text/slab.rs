@@ -1,12 +1,12 @@
 //! Interfaces whose friction law is from a file, and what the options say about them.
 
 use super::friction::Friction;
-use super::law_file::{DAMPING, DRIVING, LawFile, STIFFNESS, Sliding};
+use super::law_file::{DRIVING, LawFile, STIFFNESS, Sliding};
 use super::model::number;
+use super::slab_options::{Own, counts, damped, differ_in_units, parameters, units};
 use crate::scene::options::{ModelOptions, SlabOptions};
 use crate::scene::plan::{NEAR_SYMMETRIC, USUAL_START};
-use crate::scene::set::{assignments, put_in, twice};
-use crate::scene::system::damping;
+use crate::scene::units::{Quantity, Units};
 use serde_json::{Map, Value, json};
 use std::borrow::Cow;
 use twinslip::error::{Error, Result};
@@ -28,13 +28,8 @@ pub struct TextSlab {
     places: Vec<Vec<usize>>,
     /// V_H, where it is given.
     pub(super) driving: Option<f64>,
-}
-
-/// A parameter of the law: of all interfaces, or where they differ of each.
-struct Own {
-    name: String,
-    values: Vec<f64>,
-    differs: bool,
+    /// What numbers are measured in.
+    pub(super) units: Units,
 }
 
 impl TextSlab {
@@ -49,27 +44,24 @@ impl TextSlab {
     ) -> Result<(Self, TextSystem)> {
         let counts = counts(&options.slab)?;
         let interfaces = counts.len();
-        if options.slab.si {
-            return Err(Error::Input(match options.slab.law_file() {
-                Some(_) => format!(
-                    "`si`: the law {} is from a file, whose numbers have no units",
-                    law.name
-                ),
-                None => {
-                    "`si`: clusters, and more than 2 interfaces, are computed without units".into()
-                }
-            }));
-        }
-        let law = damped(law, options)?;
+        let units = units(&law, &options.slab)?;
+        let law = damped(law, options, &units)?;
+        let law = match options.slab.si && differ_in_units(&options.slab, free)? {
+            true => {
+                let unit = units.factor(Quantity::Stress) / units.factor(Quantity::NormalStress);
+                law.scaled(unit, units.bound_states())?
+            }
+            false => law,
+        };
         let mut loading = [options.driving, options.stiffness];
-        let own = parameters(&law, options, interfaces, &mut loading)?;
-        let [driving, stiffness] = loading;
-        for (name, value) in [("driving", driving), ("stiffness", stiffness)] {
-            let allows_rest = name == "driving" && value == Some(0.0) && free.contains(&name);
-            if let Some(value) = value.filter(|_| !allows_rest) {
-                positive(name, value)?;
+        let own = parameters(&law, options, (interfaces, &units), &mut loading)?;
+        for (name, value) in ["driving", "stiffness"].into_iter().zip(&mut loading) {
+            let allows_rest = name == "driving" && *value == Some(0.0) && free.contains(&name);
+            if let Some(value) = value.as_mut().filter(|_| !allows_rest) {
+                *value = units.inward(Quantity::of_parameter(name), positive(name, *value)?);
             }
         }
+        let [driving, stiffness] = loading;
         let needed = |name: &str, symbol: &str, value: Option<f64>| match value {
             // Any value, which is set before it counts.
             None if free.contains(&name) => Ok(1.0),
@@ -113,6 +105,7 @@ impl TextSlab {
             counts,
             places,
             driving,
+            units,
         };
         let parameters: Vec<(&str, f64)> = names.iter().map(|(n, x)| (n.as_str(), *x)).collect();
         let system = slab.system(&parameters, false)?;
@@ -164,8 +157,17 @@ impl TextSlab {
     }
 
     /// The parameters of these interfaces as an object has them.
-    pub(super) fn echo(&self, system: &TextSystem) -> Map<String, Value> {
+    pub(super) fn echo(&self, system: &TextSystem, slab: &SlabOptions) -> Map<String, Value> {
         let all = system.parameter_names().iter().zip(system.parameters());
+        let all = all.map(|(name, &x)| {
+            let quantity = Quantity::of_parameter(name);
+            (
+                name,
+                self.units
+                    .outward_uncertain(quantity, Uncertain::new(x, 0.0))
+                    .value,
+            )
+        });
         let own = all.clone().skip(STIFFNESS + 1);
         let own: Map<String, Value> = own.map(|(n, x)| ((*n).to_owned(), json!(x))).collect();
         let mut echo = Map::new();
@@ -180,6 +182,14 @@ impl TextSlab {
         echo.insert("formulas".into(), json!(self.law.fingerprint));
         echo.insert("states".into(), json!(system.states()));
         echo.insert("parameters".into(), Value::Object(own));
+        if slab.si {
+            let unit = |quantity| json!(self.units.factor(quantity));
+            echo.insert("si".into(), json!(true));
+            echo.insert("slip_length".into(), unit(Quantity::Length));
+            echo.insert("reference_rate".into(), unit(Quantity::SlipRate));
+            echo.insert("normal_stress".into(), unit(Quantity::NormalStress));
+            echo.insert("time_unit".into(), json!(slab.time_unit));
+        }
         echo
     }
 
@@ -306,8 +316,10 @@ impl TextSlab {
         if start.len() != self.counts.len() + 1 {
             return Err(unreadable());
         }
+        start[0] = self.units.inward(Quantity::Stress, start[0]);
         for psi in &mut start[1..] {
-            *psi = positive("psi in `start`", *psi)?.ln();
+            let given = positive("psi in `start`", *psi)?;
+            *psi = self.units.inward(Quantity::State, given).ln();
         }
         Ok(start)
     }
@@ -397,127 +409,5 @@ impl TextSlab {
     }
 }
 
-/// How many interfaces there are in each cluster: one, where the options say nothing of clusters. All steady states of as many are found by
-/// bisection, whose work grows exponentially with their number.
-fn counts(options: &SlabOptions) -> Result<Vec<usize>> {
-    const MOST: usize = 7;
-    let interfaces = options.count();
-    let Some(text) = &options.clusters else {
-        return match interfaces {
-            0 => Err(Error::parameter("interfaces", interfaces, "at least 1")),
-            _ if interfaces as usize <= MOST => Ok(vec![1; interfaces as usize]),
-            _ => Err(Error::Input(format!(
-                "`interfaces` {interfaces}: at most {MOST} can move independently here; group equal ones with `clusters`"
-            ))),
-        };
-    };
-    let wrong = |must: String| Error::Input(format!("`clusters` {text:?} must be {must}"));
-    let read = |part: &str| part.trim().parse::<u32>().ok().filter(|&count| count > 0);
-    let counts: Option<Vec<u32>> = text.split(',').map(read).collect();
-    let counts = counts
-        .filter(|counts| counts.len() <= MOST)
-        .ok_or_else(|| wrong(format!("1 to {MOST} whole numbers, each at least 1")))?;
-    let sum: u64 = counts.iter().copied().map(u64::from).sum();
-    if sum != u64::from(interfaces) {
-        return Err(wrong(format!(
-            "numbers that together are {interfaces}, the number of `interfaces`"
-        )));
-    }
-    Ok(counts.into_iter().map(|count| count as usize).collect())
-}
-
 /// A start at steady states that are moved apart at random.
 pub(in crate::scene) const SPREAD: &str = "spread";
-
-/// The law with the radiation damping that the options give it, where it has no parameter of that name itself.
-fn damped(law: LawFile, options: &ModelOptions) -> Result<LawFile> {
-    if law.place(DAMPING).is_some() {
-        return Ok(law);
-    }
-    let set = assignments(&options.slab.text.set)?;
-    let set = set.into_iter().rfind(|(name, _)| *name == DAMPING);
-    let given = SlabOptions {
-        damping: set.map(|(_, value)| value).or(options.slab.damping),
-        ..options.slab.clone()
-    };
-    match damping(&given)? {
-        0.0 => Ok(law),
-        eta => law.damped(eta),
-    }
-}
-
-/// The parameters of the law, with what the options and `--set` say; V_H and K go to `loading`.
-fn parameters(
-    law: &LawFile,
-    options: &ModelOptions,
-    interfaces: usize,
-    loading: &mut [Option<f64>; 2],
-) -> Result<Vec<Own>> {
-    let of_file = law.parameters.iter().map(|(name, value)| Own {
-        name: name.clone(),
-        values: vec![*value; interfaces],
-        differs: false,
-    });
-    let mut own: Vec<Own> = of_file.collect();
-    let slab = &options.slab;
-    let given = [
-        ("healing_time", slab.healing_time),
-        ("residual_strength", slab.residual_strength),
-        ("direct_effect", slab.direct_effect),
-        ("evolution_effect", slab.evolution_effect),
-        ("reference_friction", slab.reference_friction),
-        (DAMPING, slab.damping),
-    ];
-    for (name, value) in given {
-        let Some(value) = value else { continue };
-        let Some(own) = own.iter_mut().find(|own| own.name == name) else {
-            // Without damping a law needs none.
-            if name == DAMPING {
-                continue;
-            }
-            let option = name.replace('_', "-");
-            return Err(Error::Input(format!(
-                "`{option}`: the law {} is from a file, and has no parameter {name}",
-                law.name
-            )));
-        };
-        own.values.fill(value);
-    }
-    for (name, value) in assignments(&slab.text.set)? {
-        match name {
-            "driving" => put_in(&mut loading[0], name, value)?,
-            "stiffness" => put_in(&mut loading[1], name, value)?,
-            _ if given
-                .iter()
-                .any(|(option, value)| *option == name && value.is_some()) =>
-            {
-                return Err(twice(name, name));
-            }
-            DAMPING if law.place(DAMPING).is_none() => {}
-            _ => put(&mut own, name, value, interfaces)?,
-        }
-    }
-    Ok(own)
-}
-
-/// Another value of a parameter of all interfaces, or of one.
-fn put(own: &mut [Own], name: &str, value: f64, interfaces: usize) -> Result<()> {
-    if let Some(own) = own.iter_mut().find(|own| own.name == name) {
-        own.values.fill(value);
-        return Ok(());
-    }
-    let numbered = name.rsplit_once('_').and_then(|(stem, number)| {
-        let i = number.parse::<usize>().ok()?;
-        (interfaces > 1 && (1..=interfaces).contains(&i)).then_some((stem, i - 1))
-    });
-    if let Some((stem, i)) = numbered
-        && let Some(own) = own.iter_mut().find(|own| own.name == stem)
-    {
-        own.values[i] = value;
-        own.differs = true;
-        return Ok(());
-    }
-    let names = own.iter().map(|own| own.name.as_str());
-    let known: Vec<&str> = ["driving", "stiffness"].into_iter().chain(names).collect();
-    Err(Error::no_parameter("set", name, &known))
-}

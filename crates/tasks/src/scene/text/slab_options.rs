@@ -1,0 +1,182 @@
+//! What the options say of interfaces that are made of a law's formulas: how many, in which units, and the parameters of each.
+
+use super::law_file::{DAMPING, LawFile, SCALES};
+use crate::scene::options::{ModelOptions, SlabOptions};
+use crate::scene::set::{assignments, put_in, twice};
+use crate::scene::system::{damping, scales};
+use crate::scene::units::{Quantity, TimeUnit, Units};
+use twinslip::error::{Error, Result};
+use twinslip::friction::{AnyLaw, Law, Parameters};
+
+/// A parameter of the law: of all interfaces, or where they differ of each.
+pub(super) struct Own {
+    pub name: String,
+    pub values: Vec<f64>,
+    pub differs: bool,
+}
+
+/// How many interfaces there are in each cluster: one, where the options say nothing of clusters. All steady states of as many are found by
+/// bisection, whose work grows exponentially with their number.
+pub(super) fn counts(options: &SlabOptions) -> Result<Vec<usize>> {
+    const MOST: usize = 7;
+    let interfaces = options.count();
+    let Some(text) = &options.clusters else {
+        return match interfaces {
+            0 => Err(Error::parameter("interfaces", interfaces, "at least 1")),
+            _ if interfaces as usize <= MOST => Ok(vec![1; interfaces as usize]),
+            _ => Err(Error::Input(format!(
+                "`interfaces` {interfaces}: at most {MOST} can move independently here; group equal ones with `clusters`"
+            ))),
+        };
+    };
+    let wrong = |must: String| Error::Input(format!("`clusters` {text:?} must be {must}"));
+    let read = |part: &str| part.trim().parse::<u32>().ok().filter(|&count| count > 0);
+    let counts: Option<Vec<u32>> = text.split(',').map(read).collect();
+    let counts = counts
+        .filter(|counts| counts.len() <= MOST)
+        .ok_or_else(|| wrong(format!("1 to {MOST} whole numbers, each at least 1")))?;
+    let sum: u64 = counts.iter().copied().map(u64::from).sum();
+    if sum != u64::from(interfaces) {
+        return Err(wrong(format!(
+            "numbers that together are {interfaces}, the number of `interfaces`"
+        )));
+    }
+    Ok(counts.into_iter().map(|count| count as usize).collect())
+}
+
+/// SI by the slip length, the normal stress and a of the first interface; no units where that is not asked for.
+///
+/// # Errors
+/// [`Error::Input`] in SI for a law from a file.
+pub(super) fn units(law: &LawFile, slab: &SlabOptions) -> Result<Units> {
+    if !slab.si {
+        return Ok(Units::none());
+    }
+    if slab.law_file().is_some() {
+        return Err(Error::Input(format!(
+            "`si`: the law {} is from a file, whose numbers have no units",
+            law.name
+        )));
+    }
+    let mut first = slab.clone();
+    for (name, value) in assignments(&slab.text.set)? {
+        match name {
+            "slip_length" => put_in(&mut first.slip_length, name, value)?,
+            "normal_stress" => put_in(&mut first.normal_stress, name, value)?,
+            "direct_effect" | "direct_effect_1" => first.direct_effect = Some(value),
+            _ => {}
+        }
+    }
+    let bounds = AnyLaw::named(&slab.law, Parameters::heslot_1994())?.bounds_state();
+    let units = Units::new(Some(scales(&first)?), !bounds);
+    Ok(units.in_time(TimeUnit::named(&slab.time_unit)?))
+}
+
+/// Whether what units are made of varies, or is given for one of the interfaces.
+pub(super) fn differ_in_units(slab: &SlabOptions, free: &[&str]) -> Result<bool> {
+    let set = assignments(&slab.text.set)?;
+    let names = set.into_iter().map(|(name, _)| name);
+    let indexed = names.filter(|name| name.ends_with(|c: char| c.is_ascii_digit()));
+    let mut all = indexed.chain(free.iter().copied());
+    Ok(all.any(|name| {
+        let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
+        let stem = stem.strip_suffix('_').unwrap_or(stem);
+        SCALES.contains(&stem) || stem == "direct_effect"
+    }))
+}
+
+/// The law with the radiation damping that the options give it, where it has no parameter of that name itself.
+pub(super) fn damped(law: LawFile, options: &ModelOptions, units: &Units) -> Result<LawFile> {
+    if law.place(DAMPING).is_some() {
+        return Ok(law);
+    }
+    let set = assignments(&options.slab.text.set)?;
+    let set = set.into_iter().rfind(|(name, _)| *name == DAMPING);
+    let given = SlabOptions {
+        damping: set.map(|(_, value)| value).or(options.slab.damping),
+        ..options.slab.clone()
+    };
+    match damping(&given)? {
+        0.0 => Ok(law),
+        eta => law.damped(units.inward(Quantity::Damping, eta)),
+    }
+}
+
+/// The parameters of the law, with what the options and `--set` say; V_H and K go to `loading`.
+pub(super) fn parameters(
+    law: &LawFile,
+    options: &ModelOptions,
+    (interfaces, units): (usize, &Units),
+    loading: &mut [Option<f64>; 2],
+) -> Result<Vec<Own>> {
+    let inward = |name: &str, value| units.inward(Quantity::of_parameter(name), value);
+    let of_file = law.parameters.iter().map(|(name, value)| Own {
+        name: name.clone(),
+        values: vec![*value; interfaces],
+        differs: false,
+    });
+    let mut own: Vec<Own> = of_file.collect();
+    let slab = &options.slab;
+    let given = [
+        ("healing_time", slab.healing_time),
+        ("residual_strength", slab.residual_strength),
+        ("direct_effect", slab.direct_effect),
+        ("evolution_effect", slab.evolution_effect),
+        ("reference_friction", slab.reference_friction),
+        (DAMPING, slab.damping),
+    ];
+    for (name, value) in given {
+        let Some(value) = value else { continue };
+        let Some(own) = own.iter_mut().find(|own| own.name == name) else {
+            // Without damping a law needs none.
+            if name == DAMPING {
+                continue;
+            }
+            let option = name.replace('_', "-");
+            return Err(Error::Input(format!(
+                "`{option}`: the law {} is from a file, and has no parameter {name}",
+                law.name
+            )));
+        };
+        own.values.fill(inward(name, value));
+    }
+    for (name, value) in assignments(&slab.text.set)? {
+        match name {
+            "driving" => put_in(&mut loading[0], name, value)?,
+            "stiffness" => put_in(&mut loading[1], name, value)?,
+            _ if given
+                .iter()
+                .any(|(option, value)| *option == name && value.is_some()) =>
+            {
+                return Err(twice(name, name));
+            }
+            DAMPING if law.place(DAMPING).is_none() => {}
+            // These make the units.
+            _ if slab.si && SCALES.contains(&name) => {}
+            _ => put(&mut own, name, inward(name, value), interfaces)?,
+        }
+    }
+    Ok(own)
+}
+
+/// Another value of a parameter of all interfaces, or of one.
+fn put(own: &mut [Own], name: &str, value: f64, interfaces: usize) -> Result<()> {
+    if let Some(own) = own.iter_mut().find(|own| own.name == name) {
+        own.values.fill(value);
+        return Ok(());
+    }
+    let numbered = name.rsplit_once('_').and_then(|(stem, number)| {
+        let i = number.parse::<usize>().ok()?;
+        (interfaces > 1 && (1..=interfaces).contains(&i)).then_some((stem, i - 1))
+    });
+    if let Some((stem, i)) = numbered
+        && let Some(own) = own.iter_mut().find(|own| own.name == stem)
+    {
+        own.values[i] = value;
+        own.differs = true;
+        return Ok(());
+    }
+    let names = own.iter().map(|own| own.name.as_str());
+    let known: Vec<&str> = ["driving", "stiffness"].into_iter().chain(names).collect();
+    Err(Error::no_parameter("set", name, &known))
+}
