@@ -16,7 +16,7 @@ use crate::field::Matrix;
 /// What is to be zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TestFunction {
-    /// A multiplier is 1: 1 - tr + det. Also at a pitchfork, in the whole space.
+    /// A multiplier is 1: 1 - tr + det; in the plane, where there is but one, its logarithm. Also at a pitchfork, in the whole space.
     Fold,
     /// A multiplier is -1: 1 + tr + det.
     Doubling,
@@ -198,7 +198,7 @@ impl TestFunction {
             TestFunction::Doubling if dimension > 3 => product(|all| all.doubling),
             TestFunction::Torus if dimension > 3 => product(|all| all.torus),
             TestFunction::Trace(value) if dimension > 3 => product(|all| all.pair) - value,
-            TestFunction::Fold if dimension == 2 => volume.exp_m1(),
+            TestFunction::Fold if dimension == 2 => volume,
             TestFunction::Fold => 1.0 - trace + volume.exp(),
             TestFunction::Doubling => 1.0 + trace + volume.exp(),
             TestFunction::Torus => volume,
@@ -210,6 +210,7 @@ impl TestFunction {
     /// What its value is to be divided by to be of order one.
     pub(super) fn size(self, at: &Spectrum) -> f64 {
         match self {
+            TestFunction::Fold if at.dimension == 2 => 1.0 + at.volume.abs(),
             TestFunction::Fold | TestFunction::Doubling if at.dimension == 3 => {
                 1.0 + at.trace.abs() + at.volume.exp()
             }
@@ -228,7 +229,7 @@ impl TestFunction {
         }
         let of_det = at.volume.exp() * by.volume;
         match self {
-            TestFunction::Fold if at.dimension == 2 => of_det,
+            TestFunction::Fold if at.dimension == 2 => by.volume,
             TestFunction::Fold => of_det - by.trace,
             TestFunction::Doubling => of_det + by.trace,
             TestFunction::Torus => by.volume,
