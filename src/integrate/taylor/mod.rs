@@ -266,12 +266,6 @@ impl Taylor {
         mut observer: Option<Observer<'_, N>>,
         halt: Halt<'_, N>,
     ) -> Result<(State<N>, f64)> {
-        if !field.f(y0).iter().all(|x| x.is_finite()) {
-            return Err(Error::NonFinite {
-                what: "the right-hand side",
-                t: t.0,
-            });
-        }
         let accuracy = match self.arithmetic {
             Arithmetic::Double => Accuracy {
                 order: solution.order(self.accuracy.tolerances.0),
@@ -286,6 +280,13 @@ impl Taylor {
             unseen: Unseen::default(),
         };
         let on_the_way = self.steps(field, &accuracy, solution, &mut way, &mut observer, halt);
+        // Where the rates are no numbers there is no first step.
+        if self.work.steps == 0 && !field.f(y0).iter().all(|x| x.is_finite()) {
+            return Err(Error::NonFinite {
+                what: "the right-hand side",
+                t: t.0,
+            });
+        }
         if let (Err(_), Some(observer), true) = (&on_the_way, &mut observer, way.unseen.passed) {
             way.show_unseen(&State::from(solution.state()), observer)?;
         }
@@ -309,7 +310,8 @@ impl Taylor {
         observer: &mut Option<Observer<'_, N>>,
         halt: Halt<'_, N>,
     ) -> Result<()> {
-        let mut expansion = Expansion::new();
+        // Made where it is asked for: most flows have no observer.
+        let mut room = None;
         while let Some(remaining) = clock.remaining() {
             if self.work.steps == self.max_steps {
                 return Err(Error::TooManySteps {
@@ -343,9 +345,10 @@ impl Taylor {
                     continue;
                 }
                 let made = LazyCell::new(|| {
-                    solution.expansion(accuracy.order, &mut expansion);
+                    let expansion = room.get_or_insert_with(Expansion::new);
+                    solution.expansion(accuracy.order, expansion);
                     (expansion.begin, expansion.length) = (begin, h.hi());
-                    &expansion
+                    &*expansion
                 });
                 if unseen.passed {
                     *y = State::from(made.state(0.0));

@@ -136,7 +136,8 @@ impl Expressions {
     /// # Panics
     /// Where there are fewer variables or parameters than they name.
     pub fn evaluate<T: Real>(&self, variables: &[T], parameters: &[T]) -> Vec<T> {
-        let mut values: Vec<T> = Vec::with_capacity(self.operations.len());
+        let count = self.operations.len();
+        let mut values: Vec<T> = Vec::with_capacity(count + self.outputs.len());
         for operation in &self.operations {
             let at = |place: Place| values[place];
             let value = match *operation {
@@ -169,7 +170,11 @@ impl Expressions {
             };
             values.push(value);
         }
-        self.outputs.iter().map(|&place| values[place]).collect()
+        for &place in &self.outputs {
+            values.push(values[place]);
+        }
+        values.drain(..count);
+        values
     }
 
     /// How many formulas there are.

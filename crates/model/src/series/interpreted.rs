@@ -94,6 +94,8 @@ pub struct Interpreted<'a, T: Element> {
     probe: ProgramRows<T>,
     /// Whether these are the ones at the state reached.
     probed: bool,
+    /// Whether the rows hold the first coefficients there, as where a solution begins.
+    begun: bool,
     room: usize,
     reached: Reached<T>,
     /// Where a step may lead.
@@ -141,6 +143,7 @@ impl<'a, T: Element> Interpreted<'a, T> {
             rows,
             probe: ProgramRows::new(&program, 1, any),
             probed: false,
+            begun: false,
             record,
             room,
             next: reached.clone(),
@@ -184,8 +187,10 @@ impl<'a, T: Element> Interpreted<'a, T> {
         self.noise.fill(self.any.like(0.0));
         self.crossing = 0.0;
         self.probed = false;
+        self.begun = false;
         self.rejected = 0;
         self.record_here();
+        self.begun = true;
         // The time in which the state would change by its own size; of a variable that is zero, by the rounding of the largest. A series that
         // ends after its second term, as that of time, asks for no unit.
         let ends = |i: &usize| matches!(self.program.outputs[*i], Source::Number(_));
@@ -210,6 +215,9 @@ impl<'a, T: Element> Interpreted<'a, T> {
     /// The formula as it is here, if it is not the same everywhere, and the first coefficients.
     #[inline(always)]
     fn record_here(&mut self) {
+        if std::mem::take(&mut self.begun) {
+            return;
+        }
         if self.program.branches
             && let Some(record) = &self.record
         {
@@ -419,7 +427,7 @@ impl<T: Element> Trajectory for Interpreted<'_, T> {
     }
 
     fn start(&mut self, y: &[f64]) {
-        let mut x = self.reached.x.clone();
+        let mut x = std::mem::take(&mut self.next.x);
         for (&(row, lane), &y) in self.program.places.iter().zip(y) {
             // The first lane fills all, as of rows that have but one number.
             x[row] = if lane == 0 {
@@ -429,6 +437,7 @@ impl<T: Element> Trajectory for Interpreted<'_, T> {
             };
         }
         self.begin(&x);
+        self.next.x = x;
     }
 
     fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble {
