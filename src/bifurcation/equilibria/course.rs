@@ -367,7 +367,9 @@ pub(super) fn exact_stiffness(request: &BranchRequest) -> Uncertain {
 /// Rates between two, finer towards those that are extrema.
 fn rates((low, high): (f64, f64), extrema: [bool; 2], step: f64) -> Vec<f64> {
     let width = log_ratio(low, high);
-    let (longest, shortest) = (LONGEST * step, SHORTEST * step.min(1.0));
+    /// A narrow range has so many steps at least.
+    const STEPS: f64 = 10.0;
+    let (longest, shortest) = (LONGEST.min(width / STEPS) * step, SHORTEST * step.min(1.0));
     // from the end at 0 up to the middle
     let half = |extremum: bool| {
         let mut at = Vec::new();

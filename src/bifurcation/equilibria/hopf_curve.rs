@@ -10,8 +10,9 @@ use crate::error::Result;
 use crate::friction::{AnyLaw, rounding};
 use crate::number::{DoubleDouble, Jet, bracketed_root};
 
-/// The longest step in ln K.
+/// The longest step in ln K, and as a part of its range.
 const LONGEST: f64 = 0.1;
+const PART: f64 = 0.1;
 
 /// A rate with the stiffnesses of Hopf points there, ascending.
 #[derive(Debug, Clone)]
@@ -125,10 +126,11 @@ impl<'a> Root<'_, 'a> {
         /// Times that a step is halved.
         const DEEPEST: usize = 8;
         let stiffness = |knot: &Knot<'a>| knot.roots[self.place].to_f64();
-        let within = |k: f64| (request.stiffness.0..=request.stiffness.1).contains(&k);
+        let (low, high) = request.stiffness;
+        let longest = LONGEST.min(PART * (high / low).ln()) * request.step;
         let far = |a: &Knot<'a>, b: &Knot<'a>| {
             let [a, b] = [a, b].map(stiffness);
-            within(a) && within(b) && (a / b).ln().abs() > LONGEST * request.step
+            a.min(b) <= high && a.max(b) >= low && (a / b).ln().abs() > longest
         };
         let mut refined = knots[..1].to_vec();
         for knot in &knots[1..] {

@@ -187,22 +187,6 @@ fn coefficients<T: Real>(
     sum
 }
 
-/// The slopes of the coefficients in each of N rates.
-fn slopes<const N: usize>(
-    law: &AnyLaw,
-    counts: &[usize],
-    bounds: &[Interval],
-    stiffness: f64,
-) -> [[Interval; CLUSTERS]; COUNT] {
-    let variables = bounds.iter().enumerate();
-    let variables: Vec<Jet<Interval, N>> = variables
-        .map(|(i, &within)| Jet::variable(within, i))
-        .collect();
-    let zero = Interval::constant(0.0);
-    coefficients(law, counts, &variables, stiffness)
-        .map(|one| std::array::from_fn(|i| one.gradient.get(i).copied().unwrap_or(zero)))
-}
-
 /// The coefficients with what they may be off.
 fn bounded(law: &AnyLaw, equilibrium: &Equilibrium, stiffness: f64) -> InexactCoefficients {
     let (counts, rates) = (&equilibrium.counts, &equilibrium.slip_rate);
@@ -211,14 +195,19 @@ fn bounded(law: &AnyLaw, equilibrium: &Equilibrium, stiffness: f64) -> InexactCo
     let point: Vec<Interval> = rates.iter().map(|&v| Interval::constant(v)).collect();
     let at_point = coefficients(law, counts, &point, stiffness);
     let bounds = &equilibrium.rate_bounds;
-    let slopes = match rates.len() {
-        1 => slopes::<1>(law, counts, bounds, stiffness),
-        2 => slopes::<2>(law, counts, bounds, stiffness),
-        _ => slopes::<CLUSTERS>(law, counts, bounds, stiffness),
-    };
+    let slopes: Vec<[Interval; COUNT]> = (0..rates.len())
+        .map(|of| {
+            let along = bounds.iter().enumerate().map(|(i, &value)| Jet {
+                value,
+                gradient: [Interval::constant(if i == of { 1.0 } else { 0.0 })],
+            });
+            let along: Vec<Jet<Interval, 1>> = along.collect();
+            coefficients(law, counts, &along, stiffness).map(|one| one.gradient[0])
+        })
+        .collect();
     let radii = equilibrium.slip_rate_uncertainty();
     let mut shifts: Vec<_> = of_inputs.iter().map(|effect| effect.to_vec()).collect();
-    let middle = |i: usize, of: usize| slopes[i][of].leading();
+    let middle = |i: usize, of: usize| slopes[of][i].leading();
     let together = equilibrium.together.iter().enumerate();
     let together = |i: usize| {
         together
@@ -237,7 +226,7 @@ fn bounded(law: &AnyLaw, equilibrium: &Equilibrium, stiffness: f64) -> InexactCo
         let digits = (1e-250..1e250).contains(&value.abs());
         let part = if digits { OF_31_DIGITS } else { 1.0 };
         let rounding = part * at_point[i].distance_from(value);
-        let slope = |of: usize| slopes[i][of];
+        let slope = |of: usize| slopes[of][i];
         let within = radii.iter().enumerate();
         let within = within.map(|(of, r)| slope(of).distance_from(slope(of).leading()) * r);
         rounding + within.sum::<f64>()

@@ -85,7 +85,7 @@ pub fn branch_columns(orbits: bool, interfaces: usize) -> Vec<Column<BranchRow>>
         (false, true) => {
             let starts = |prefix: &&str| name.starts_with(prefix);
             let mut prefixes = ["stress_", "period", "count_", "state_"].iter();
-            prefixes.any(|prefix| starts(prefix)) || left_out_of_equilibria(name)
+            prefixes.any(starts) || left_out_of_equilibria(name)
         }
         (false, false) => {
             ["stress_min", "stress_max", "period", "unstable"].contains(&name)
