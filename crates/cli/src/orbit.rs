@@ -30,7 +30,7 @@ pub fn run(options: &OrbitOptions, call: &Call) -> Result<Ending> {
     // Only the object tells of the second opinion: rows need not wait for it.
     let in_rows = report.format != Format::Json;
     let mut ending = Ending::Done;
-    if in_rows && !plan.rows.is_some() {
+    if in_rows && plan.rows.is_none() {
         ending = write_orbits(plan, &report, &orbit, &others)?;
     }
     let rows = along(plan, &report, &orbit, picture)?;
@@ -133,7 +133,7 @@ fn along(
     if let Some(path) = picture {
         report.draw(path, &run.picture(&out.drawn))?;
     }
-    if !plan.rows.is_some() {
+    if plan.rows.is_none() {
         return failure.map_or(Ok(None), Err);
     }
     report.ended(failure.map_or(Ok(Ending::Done), Err))?;
