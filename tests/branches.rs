@@ -341,7 +341,7 @@ fn points_are_bounded() {
     ] {
         let ended = twinslip(&format!("{arguments} --max-points {limit} --format csv"));
         assert_eq!(ended.code, 1, "{arguments}: {}", ended.err);
-        let named = format!("stopped after {limit} points");
+        let named = format!("stopped at the limit of {limit} points");
         assert!(ended.err.contains(&named), "{arguments}: {}", ended.err);
         // Points before the range count, but are no rows.
         let rows = csv(&ended.out).len().saturating_sub(1);
@@ -443,7 +443,7 @@ fn wrong_curves_are_refused() {
         ),
         (
             "locus hopf --stiffness 0.14",
-            "--stiffness varies along a curve",
+            "--stiffness is a free parameter of a curve",
         ),
         ("locus hopf --driving 1", "use --driving-range"),
         ("locus hopf --driving-range 1", "must be A:B, two numbers"),

@@ -181,7 +181,7 @@ s = 0.0
         let run = format!("integrate --system {file} --until 1599 --method {method} --final-only");
         let ended = command::twinslip(&run);
         assert_eq!(ended.code, 1, "{run}: {}{}", ended.out, ended.err);
-        let told = "variable 1 fell below 2.2e-308, the least double, and grows again";
+        let told = "variable 1 fell below 2.2e-308, the smallest normal double, and grows again";
         assert!(ended.err.contains(told), "{run}: {}", ended.err);
     }
     // As long as it is as good as 0, nothing is lost.

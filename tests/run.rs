@@ -334,7 +334,9 @@ fn a_blow_up_keeps_its_rows_and_says_when() {
     let ended = twinslip(&format!("{BLOW_UP} --format json -q"));
     assert_eq!(ended.code, 1);
     assert!(
-        ended.err.contains("blows up in finite time: at t = 226.64"),
+        ended
+            .err
+            .contains("blows up in finite time: it grows without bound at t = 226.64"),
         "{}",
         ended.err
     );

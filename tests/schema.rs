@@ -56,7 +56,9 @@ fn law() {
             "stress",
             "friction",
             "state",
-            "critical_stiffness"
+            "critical_stiffness",
+            "stress_uncertainty",
+            "state_uncertainty"
         ]
     );
     assert_eq!(
@@ -293,7 +295,8 @@ fn section() {
             "slip_rate_1",
             "slip_rate_2",
             "slip_rate_sum",
-            "next_slip_rate_sum"
+            "next_slip_rate_sum",
+            "stress"
         ]
     );
     for pair in rows.windows(2) {
@@ -338,7 +341,8 @@ fn section() {
             "log_state_1",
             "slip_rate_1",
             "slip_rate_sum",
-            "next_slip_rate_sum"
+            "next_slip_rate_sum",
+            "stress"
         ]
     );
     assert_eq!(one["result"]["regime"], "periodic");

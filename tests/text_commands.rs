@@ -162,7 +162,7 @@ fn what_makes_no_sense_with_a_system_is_refused() {
     );
     refused_in_one_line(
         "equilibria --system lorenz --box x=1:0,y=0:1,z=0:1",
-        "must rise",
+        "must increase",
     );
     refused_in_one_line(
         "integrate --system lorentz --until 1",

@@ -226,7 +226,7 @@ fn jacobians_are_the_derivatives_of_the_rates() {
 #[test]
 fn names_are_those_of_what_a_law_has() {
     let names = |law, damping| unlike(law, damping).names().to_vec();
-    assert_eq!(names("spinodal", 0.1).len(), 20);
+    assert_eq!(names("spinodal", 0.1).len(), 24);
     assert!(!names("spinodal", 0.0).contains(&"damping"));
     assert!(!names("bounded", 0.1).contains(&"residual_strength_2"));
     assert!(names("bounded", 0.1).contains(&"healing_time_1"));
@@ -244,7 +244,7 @@ fn names_are_those_of_what_a_law_has() {
         twofold,
         "healing_time is 80 and 100, but must be asked for as healing_time_1 or healing_time_2, as the interfaces differ in it"
     );
-    let unknown = two.with("slip_length_1", 2.0).unwrap_err().to_string();
+    let unknown = two.with("slip_length_3", 2.0).unwrap_err().to_string();
     assert!(unknown.contains("slip_length_2"), "{unknown}");
     for (name, value) in [
         ("residual_strength_2", -1.0),

@@ -159,10 +159,14 @@ impl Judge {
             if !arrived && !comes_as_said(run.surface.chart, returns, &found) {
                 return None;
             }
-            let told = self.orbit(run, &found)?;
             // A leap is confirmed where it led to.
-            let same = |leap: &mut Leap| apart(&leap.to.point, &found.point) < CONVERGED * unit;
-            run.leap.take_if(same);
+            let same = |leap: &&Leap| apart(&leap.to.point, &found.point) < CONVERGED * unit;
+            let to = run.leap.as_ref().filter(same).map(|leap| leap.to.clone());
+            let is_confirmed = to.is_some();
+            let told = self.tightest(run, [Some(found), to].into_iter().flatten())?;
+            if is_confirmed {
+                run.leap = None;
+            }
             return Some(told);
         }
         if apart(last, &found.point) < ON_ORBIT * unit {
@@ -196,10 +200,10 @@ impl Judge {
             if !leap.is_near(returns) {
                 return self.leap(run, to);
             }
-            // Its last step is above rounding there, so that it shows how the multipliers change.
             let here = self.near(run, to.returns);
-            here.filter(|here| apart(&here.point, &to.point) < CONVERGED * run.unit)
-                .or(Some(to))
+            let same = |here: &Periodic| apart(&here.point, &to.point) < CONVERGED * run.unit;
+            let here = here.filter(same);
+            vec![Some(to), here]
         } else {
             let far = run.may_leap().then(|| self.slow(run).ahead()).flatten();
             if let Some(Creeping::Leapt) = far.map(|far| self.leap(run, far)) {
@@ -213,12 +217,11 @@ impl Judge {
                 return Creeping::To(Box::new(steady(run, &equilibrium)));
             }
             // Where little is between the map and the identity, the point is off by much more than the map.
-            self.slow(run).nearby()
+            vec![self.slow(run).nearby()]
         };
-        let Some(found) = found.filter(|found| self.attracts(found)) else {
-            return Creeping::No;
-        };
-        match self.orbit(run, &found) {
+        let attracting = found.into_iter().flatten();
+        let attracting: Vec<Periodic> = attracting.filter(|found| self.attracts(found)).collect();
+        match self.tightest(run, attracting) {
             Some(told) => {
                 run.leap = None;
                 Creeping::To(Box::new(told))
@@ -254,6 +257,24 @@ impl Judge {
     /// Whether the point attracts, beyond the error of its multiplier.
     fn attracts(&self, found: &Periodic) -> bool {
         attracts(found, self.settings.rtol)
+    }
+
+    /// The orbit through points that are one and the same, from that which gives the tightest bound: that is a matter of how far the last step of
+    /// Newton's method was above rounding.
+    fn tightest(
+        &mut self,
+        run: &SweepRun,
+        points: impl IntoIterator<Item = Periodic>,
+    ) -> Option<Settled> {
+        let off = |told: &Settled| {
+            told.row
+                .lyapunov_max
+                .map_or(f64::INFINITY, |x| x.uncertainty)
+        };
+        let told = points
+            .into_iter()
+            .filter_map(|point| self.orbit(run, &point));
+        told.min_by(|a, b| off(a).total_cmp(&off(b)))
     }
 
     fn orbit(&mut self, run: &SweepRun, found: &Periodic) -> Option<Settled> {

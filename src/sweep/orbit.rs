@@ -45,6 +45,8 @@ pub(super) fn around(
     let (mut before, mut step) = (found.multiplier, found.last_step);
     let mut largest: Option<Uncertain> = None;
     let mut told: Option<(Vector, f64)> = None;
+    // What the period that is told may be off by, and the period of the point before.
+    let (mut period_off, mut period_before) = (found.period.uncertainty, period);
     for round in 0..ROUNDS {
         let mut points = vec![(DoubleDouble::ZERO, point.clone())];
         let mut steps = 0;
@@ -71,6 +73,7 @@ pub(super) fn around(
         if told.is_none() {
             told = Some((point.clone(), period));
         }
+        let period_change = (period - period_before).abs();
         points.retain(|(begin, _)| begin.hi() < period);
         let now = DoubleDouble::from(period);
         let along = derivative_along(field, surface, fine, &points, now);
@@ -94,16 +97,22 @@ pub(super) fn around(
         }
         largest = Some(here);
         told = Some((point.clone(), period));
-        if changes(part) <= error {
+        if round > 0 {
+            let rounding = DERIVATIVE_PER_RTOL * TOLERANCE * period;
+            period_off = CHANGE * period_change * part.min(1.0) + rounding;
+        }
+        let by_period = here.value.abs() * period_off / period;
+        if changes(part) <= error && by_period <= error {
             break;
         }
+        period_before = period;
         point = surface.nearest(&(point + &left));
         (before, step) = (mu, left.amax());
     }
     let (point, period) = told?;
     let exponent = largest.map(|ln| {
         // The period is that of a point a little beside the orbit.
-        let by_period = ln.value.abs() * found.period.uncertainty / period;
+        let by_period = ln.value.abs() * period_off / period;
         Uncertain::new(ln.value / period, (ln.uncertainty + by_period) / period)
     });
     Some(Around {

@@ -43,7 +43,7 @@ use std::rc::Rc;
 pub struct Sweeper(Judge);
 
 /// A run that is followed, or the row of a point that there is not.
-type Begun = std::result::Result<SweepRun, Settled>;
+type Begun = std::result::Result<SweepRun, Box<Settled>>;
 
 impl Sweeper {
     /// # Errors
@@ -105,9 +105,11 @@ impl Sweeper {
     /// The run of a point, which starts on the attractor of the point before where there is one.
     fn begin(&self, number: usize, before: Option<Vector>) -> Begun {
         let settings = &self.0.settings;
-        let mut point = point(settings, number).map_err(|error| Settled {
-            row: missing(settings, number, error.to_string()),
-            attractor: None,
+        let mut point = point(settings, number).map_err(|error| {
+            Box::new(Settled {
+                row: missing(settings, number, error.to_string()),
+                attractor: None,
+            })
         })?;
         if let Some(before) = before {
             point.start = point.units.inward(&before);
@@ -127,7 +129,7 @@ impl Sweeper {
         let (mut runs, mut active) = (Vec::new(), Vec::new());
         for (place, run) in begun.into_iter().enumerate() {
             told.push(match run {
-                Err(missing) => Some(missing),
+                Err(missing) => Some(*missing),
                 Ok(mut run) => {
                     let failed = self.0.pass_transient(&mut run).err();
                     let failed = failed.map(|error| undecided(&run, run.in_words(error)));

@@ -233,10 +233,8 @@ impl SweepRun {
 
     /// Whether a stable equilibrium has caught the run at the end of a step; then it ends there.
     pub fn is_caught(&mut self, step: &AnyStep<'_>) -> bool {
-        let equations = match &self.enclosed {
-            Some(Enclosure(equations)) => Some(&**equations as &dyn Enclosed),
-            None => None,
-        };
+        let enclosed = self.enclosed.as_ref();
+        let equations = enclosed.map(|Enclosure(equations)| &**equations as &dyn Enclosed);
         let at = self.attraction.of(&self.field, equations, step.y1);
         if let Some(equilibrium) = at {
             self.recorder.ended = Some(caught(step.t1, equilibrium));

@@ -12,7 +12,7 @@ fn an_option_is_told_as_its_flag() {
         ),
         (
             "use `section` to see what it does, or give a `start`",
-            "look at it with `section`, or give a --start",
+            "use `section` to see what it does, or give a --start",
         ),
         ("one ` alone, then `rtol", "one ` alone, then `rtol"),
         ("`a``rtol``", "`a`--rtol`"),

@@ -41,6 +41,13 @@ pub(super) fn of_one(option: &str, name: &str) -> Result<Option<(usize, usize)>>
     }
 }
 
+/// Whether a name is that of a parameter of one interface, of however many.
+pub(super) fn is_of_one(name: &str) -> bool {
+    name.rsplit_once('_').is_some_and(|(base, index)| {
+        NAMES.contains(&base) && index.bytes().all(|byte| byte.is_ascii_digit())
+    })
+}
+
 /// The numbers that are given for one interface, in the user's units.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct OfOne([[Option<f64>; COUNT]; 2]);
