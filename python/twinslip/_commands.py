@@ -447,12 +447,12 @@ class Commands:
             z) with z drawn between -1 and 1 [default from 8 interfaces on]. For a system from a
             file: all states in order [default: its table start]
         surface : str, number or sequence, optional
-            Section of the return map: stress=VALUE, or stress=auto for the steady stress at the
-            mean slip rate, tau_ss(V_H/2) of two interfaces [default: stress=auto]. With ``system``
-            STATE=VALUE (required); with a ``law`` from a file either form
+            Section of the return map, STATE=VALUE; of interfaces stress=VALUE or
+            log_state_1=VALUE, or stress=auto for the steady stress at the mean slip rate,
+            tau_ss(V_H/2) of two interfaces [default: stress=auto; required with ``system``]
         upwards : bool, optional
-            Count returns where the stress (with ``system`` the state) rises through the section;
-            by default where it falls
+            Count returns where the state, by default the stress, rises through the section; by
+            default where it falls
         returns : int, optional
             Number of returns to record [default: 1000]
         skip : int, optional
