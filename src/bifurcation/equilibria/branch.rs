@@ -1,6 +1,6 @@
 //! Branches of equilibria of N interfaces: which shares they pass, what of them lies in the range, and rows of it.
 
-use super::course::{Course, Station, exact_stiffness, steady_curve};
+use super::course::{Course, Station, Step, exact_stiffness, steady_curve};
 use super::hopf::ShareHopf;
 use super::special::Teller;
 use super::stationary::{meeting, parting};
@@ -75,14 +75,16 @@ impl<'a> Run<'a> {
         let (law, interfaces) = (&request.slab.law, request.slab.interfaces);
         let (from, to) = request.range;
         let range = (from.min(to), most);
-        let alike = Course::alike(law, interfaces, range, request.step);
-        let apart = Course::shares(self.steady, most, request.step);
+        let step = Step::new(request.step, request.max_points);
+        let alike = Course::alike(law, interfaces, range, step);
+        let apart = Course::shares(self.steady, most, step);
         let apart = apart.filter(|_| self.wants(Symmetry::Asymmetric));
         let branches = branches_apart(self.steady.has(), interfaces);
         if let Some(course) = &apart {
             let legs = branches.iter().flatten();
             let rows: usize = legs.map(|leg| course.rows(&leg.share, range)).sum();
-            if rows > request.max_points {
+            // Shorter steps than usual end at the limit, with the points up to there.
+            if rows > request.max_points && request.step >= 1.0 {
                 let must = format!(
                     "at least about {rows}, the number of points of all branches of {interfaces} interfaces"
                 );
@@ -264,7 +266,9 @@ impl<'a> Run<'a> {
         let (from, to) = request.range;
         let exact = |k: f64| Uncertain::new(k, 0.0);
         let plain = |label, k| Special::new(label, exact(driving), exact(k));
+        let step = Step::new(request.step, request.max_points);
         let steps = ((to / from).ln().abs() / (LONGEST * request.step)).ceil();
+        let steps = steps.min(step.most_intervals());
         let between = (1..steps as usize).map(|i| from * (to / from).powf(i as f64 / steps));
         let mut all: Vec<(f64, Option<Special>)> = between.map(|k| (k, None)).collect();
         let ends = [from, to].into_iter().filter(|k| !request.at.contains(k));

@@ -79,7 +79,7 @@ pub(super) struct Course<'a> {
 
 impl<'a> Course<'a> {
     /// All alike, over a range of V_H and a little more.
-    pub fn alike(law: &'a AnyLaw, interfaces: usize, (from, to): (f64, f64), step: f64) -> Self {
+    pub fn alike(law: &'a AnyLaw, interfaces: usize, (from, to): (f64, f64), step: Step) -> Self {
         /// In the logarithm.
         const MORE: f64 = 1e-3;
         let n = interfaces as f64;
@@ -92,7 +92,7 @@ impl<'a> Course<'a> {
     }
 
     /// The middle branch, as far as V_H up to a largest one needs it. `None` where there is none.
-    pub fn shares(steady: SteadyCurve<'a>, most: f64, step: f64) -> Option<Self> {
+    pub fn shares(steady: SteadyCurve<'a>, most: f64, step: Step) -> Option<Self> {
         let curve = EquilibriumCurve::Shares(steady);
         let at = |branch: usize| steady.extremum(branch).map(Interval::leading);
         let (peak, trough) = (at(SLOW), at(FAST));
@@ -364,12 +364,32 @@ pub(super) fn exact_stiffness(request: &BranchRequest) -> Uncertain {
     Uncertain::new(request.slab.loading.stiffness, 0.0)
 }
 
+/// The factor on the lengths of steps, and how many points are allowed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Step {
+    factor: f64,
+    most: usize,
+}
+
+impl Step {
+    pub fn new(factor: f64, most: usize) -> Self {
+        Step { factor, most }
+    }
+
+    /// More intervals than this have more points than are allowed, also where only some of them are within the range.
+    pub fn most_intervals(self) -> f64 {
+        4.0 * self.most as f64 + 1e3
+    }
+}
+
 /// Rates between two, finer towards those that are extrema.
-fn rates((low, high): (f64, f64), extrema: [bool; 2], step: f64) -> Vec<f64> {
+fn rates((low, high): (f64, f64), extrema: [bool; 2], step: Step) -> Vec<f64> {
     let width = log_ratio(low, high);
+    let factor = step.factor;
     /// A narrow range has so many steps at least.
     const STEPS: f64 = 10.0;
-    let (longest, shortest) = (LONGEST.min(width / STEPS) * step, SHORTEST * step.min(1.0));
+    let longest = (LONGEST.min(width / STEPS) * factor).max(width / step.most_intervals());
+    let shortest = SHORTEST * factor.min(1.0);
     // from the end at 0 up to the middle
     let half = |extremum: bool| {
         let mut at = Vec::new();

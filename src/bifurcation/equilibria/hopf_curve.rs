@@ -1,6 +1,6 @@
 //! A curve of Hopf points along a share: where it lands on what is asked for, and what is special on it.
 
-use super::course::Course;
+use super::course::{Course, Step};
 use super::hopf::ShareHopf;
 use super::lyapunov::FirstLyapunov;
 use super::stationary::Fold;
@@ -132,12 +132,13 @@ impl<'a> Root<'_, 'a> {
             let [a, b] = [a, b].map(stiffness);
             a.min(b) <= high && a.max(b) >= low && (a / b).ln().abs() > longest
         };
+        let most = Step::new(request.step, request.max_points).most_intervals();
         let mut refined = knots[..1].to_vec();
         for knot in &knots[1..] {
             let mut open = vec![(knot.clone(), 0)];
             while let Some((next, depth)) = open.pop() {
                 let last = &refined[refined.len() - 1];
-                if depth < DEEPEST && far(last, &next) {
+                if depth < DEEPEST && (refined.len() as f64) < most && far(last, &next) {
                     let x = (last.point.rate() * next.point.rate()).sqrt();
                     let middle = self.course.curve.point(DoubleDouble::from(x));
                     let middle = Knot::at(&self.share, middle);

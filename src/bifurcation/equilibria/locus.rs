@@ -11,7 +11,7 @@
 //! either).
 
 use super::branch::told_share;
-use super::course::{Course, steady_curve};
+use super::course::{Course, Step, steady_curve};
 use super::hopf_curve::{CurvePoint, Knot, Root};
 use super::special::Teller;
 use crate::bifurcation::{Label, LocusRequest, LocusRow, Parameter, Special};
@@ -29,14 +29,15 @@ pub(super) fn locus(request: &LocusRequest, teller: &mut Teller<'_>) -> Result<C
         teller,
         curves: 0,
     };
+    let step = Step::new(request.step, request.max_points);
     let wants = |symmetry| request.symmetry.is_none_or(|wanted| wanted == symmetry);
     if wants(Symmetry::Symmetric) {
-        let course = Course::alike(&slab.law, interfaces, request.driving, request.step);
+        let course = Course::alike(&slab.law, interfaces, request.driving, step);
         if run.of_share(&course, [0, interfaces, 0])?.is_break() {
             return Ok(ControlFlow::Break(()));
         }
     }
-    let course = Course::shares(steady, request.driving.1, request.step);
+    let course = Course::shares(steady, request.driving.1, step);
     let Some(course) = course.filter(|_| wants(Symmetry::Asymmetric)) else {
         return Ok(ControlFlow::Continue(()));
     };

@@ -4,7 +4,7 @@
 //! s^2 + 2 K s / F_V + 2 K G_psi / F_V with positive coefficients, and nothing degenerates along it. On a fold line the coefficient of z
 //! has one zero, a Bogdanov-Takens point; of V_sn with the paper's parameters it lies at K = 4.4e-13, next to nothing.
 
-use super::course::{Course, steady_curve};
+use super::course::{Course, Step, steady_curve};
 use super::special::Teller;
 use super::stationary::{meeting, parting};
 use crate::bifurcation::{Criticality, Label, LocusKind, LocusRequest, LocusRow, Special};
@@ -47,7 +47,8 @@ fn wants(request: &LocusRequest, symmetry: Symmetry) -> bool {
 
 fn folds(request: &LocusRequest) -> Result<Vec<VerticalLine>> {
     let steady = steady_curve(&request.slab, request.driving.1)?;
-    let course = Course::shares(steady, request.driving.1, request.step);
+    let step = Step::new(request.step, request.max_points);
+    let course = Course::shares(steady, request.driving.1, step);
     let course = course.filter(|_| wants(request, Symmetry::Asymmetric));
     let mut all = Vec::new();
     if let Some(course) = &course {
