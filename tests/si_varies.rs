@@ -454,3 +454,37 @@ fn a_healing_time_along_a_branch_is_in_seconds() {
         assert_eq!(row["stress"], other["stress"]);
     }
 }
+
+/// Without units the stress is in a_1 sigma_1 and time in L_1/V*, of three interfaces as of two.
+#[test]
+fn three_interfaces_are_measured_in_units_of_the_first() {
+    const K: f64 = 0.2;
+    let more = "--set slip_length_3=1.8,normal_stress_2=1.2,direct_effect_2=0.036";
+    let made = object(&format!(
+        "branch equilibria --interfaces 3 --stiffness {K:?} {more} --along driving=5:20 --at 10"
+    ));
+    let landed = rows(&made).iter().filter(|row| row["label"] == "UZ");
+    let landed: Vec<&Value> = landed.collect();
+    assert!(!landed.is_empty());
+    for row in landed {
+        // tau = n (a/a_1) (law) of each interface, and the rates add up to V_H.
+        let stress = number(row, "/stress");
+        let mut total = 0.0;
+        for (i, [length, n, a]) in [[1.0, 1.0, A], [1.0, 1.2, 0.036], [1.8, 1.0, A]]
+            .into_iter()
+            .enumerate()
+        {
+            let psi = number(row, &format!("/log_state_{}", i + 1)).exp();
+            // dpsi/dt = (1 - psi)/R - v psi/l
+            let v = (1.0 - psi) / psi * length / 100.0;
+            let healing = 100.0 / length;
+            let (b, a_v, c) = (0.0489_f64, 0.369_f64, 1e-3_f64);
+            let gamma = 2.0 * (-a_v / a).exp();
+            let strength = (c + (1.0 + healing) * psi).powf(b / a);
+            let own = (v * strength / gamma).asinh() * n * a / A;
+            near(stress, own, 1e-9, &format!("interface {}", i + 1));
+            total += v;
+        }
+        near(total, 10.0, 1e-9, "the sum of the rates");
+    }
+}

@@ -155,11 +155,6 @@ impl Units {
         }
     }
 
-    /// Whether psi is bounded: else it is a time.
-    pub(super) fn bound_states(&self) -> bool {
-        !self.state_is_time
-    }
-
     /// Whether the numbers are in SI.
     pub fn si(&self) -> bool {
         self.scales.is_some()

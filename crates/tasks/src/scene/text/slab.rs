@@ -3,7 +3,7 @@
 use super::friction::Friction;
 use super::law_file::{DRIVING, LawFile, STIFFNESS, Sliding};
 use super::model::number;
-use super::slab_options::{Own, counts, damped, differ_in_units, parameters, units};
+use super::slab_options::{Own, counts, damped, parameters, unit_of_stress, units};
 use crate::scene::options::{ModelOptions, SlabOptions};
 use crate::scene::plan::{NEAR_SYMMETRIC, USUAL_START};
 use crate::scene::units::{Quantity, Units};
@@ -11,7 +11,7 @@ use serde_json::{Map, Value, json};
 use std::borrow::Cow;
 use twinslip::error::{Error, Result};
 use twinslip::field::Vector;
-use twinslip::friction::positive;
+use twinslip::friction::{AnyLaw, Law, Parameters, positive};
 use twinslip::integrate::AnyField;
 use twinslip::model::TextSystem;
 use twinslip::number::{Interval, Jet, Real, Uncertain};
@@ -46,12 +46,12 @@ impl TextSlab {
         let interfaces = counts.len();
         let units = units(&law, &options.slab)?;
         let law = damped(law, options, &units)?;
-        let law = match options.slab.si && differ_in_units(&options.slab, free)? {
-            true => {
-                let unit = units.factor(Quantity::Stress) / units.factor(Quantity::NormalStress);
-                law.scaled(unit, units.bound_states())?
+        let law = match unit_of_stress(&options.slab, &units, free)? {
+            Some(unit) => {
+                let named = AnyLaw::named(&options.slab.law, Parameters::heslot_1994())?;
+                law.scaled(unit, named.bounds_state())?
             }
-            false => law,
+            None => law,
         };
         let mut loading = [options.driving, options.stiffness];
         let own = parameters(&law, options, (interfaces, &units), &mut loading)?;

@@ -58,6 +58,14 @@ pub(super) fn units(law: &LawFile, slab: &SlabOptions) -> Result<Units> {
             law.name
         )));
     }
+    let first = first(slab)?;
+    let bounds = AnyLaw::named(&slab.law, Parameters::heslot_1994())?.bounds_state();
+    let units = Units::new(Some(scales(&first)?), !bounds);
+    Ok(units.in_time(TimeUnit::named(&slab.time_unit)?))
+}
+
+/// The options with what `set` says of the slip length, the normal stress and a of the first interface.
+fn first(slab: &SlabOptions) -> Result<SlabOptions> {
     let mut first = slab.clone();
     for (name, value) in assignments(&slab.text.set)? {
         match name {
@@ -67,13 +75,41 @@ pub(super) fn units(law: &LawFile, slab: &SlabOptions) -> Result<Units> {
             _ => {}
         }
     }
-    let bounds = AnyLaw::named(&slab.law, Parameters::heslot_1994())?.bounds_state();
-    let units = Units::new(Some(scales(&first)?), !bounds);
-    Ok(units.in_time(TimeUnit::named(&slab.time_unit)?))
+    Ok(first)
+}
+
+/// The a of the unit of stress, where the interfaces have units of their own: in SI any, else that of the first. `None` where all have the same units, and for a
+/// law from a file, whose formulas say what tau is.
+pub(super) fn unit_of_stress(
+    slab: &SlabOptions,
+    units: &Units,
+    free: &[&str],
+) -> Result<Option<f64>> {
+    if slab.law_file().is_some() {
+        return Ok(None);
+    }
+    let indexed = |name: &&&str| name.ends_with(|c: char| c.is_ascii_digit());
+    let free: Vec<&str> = match slab.si {
+        true => free.to_vec(),
+        false => free.iter().filter(indexed).copied().collect(),
+    };
+    if !differ_in_units(slab, &free)? {
+        return Ok(None);
+    }
+    let of_first = ["slip_length_1", "normal_stress_1", "direct_effect_1"];
+    if let Some(name) = free.iter().find(|name| !slab.si && of_first.contains(name)) {
+        return Err(Error::Input(format!(
+            "`{name}` is the unit of other numbers and cannot vary without `si`; give values with units"
+        )));
+    }
+    Ok(Some(match slab.si {
+        true => units.factor(Quantity::Stress) / units.factor(Quantity::NormalStress),
+        false => first(slab)?.a(),
+    }))
 }
 
 /// Whether what units are made of varies, or is given for one of the interfaces.
-pub(super) fn differ_in_units(slab: &SlabOptions, free: &[&str]) -> Result<bool> {
+fn differ_in_units(slab: &SlabOptions, free: &[&str]) -> Result<bool> {
     let set = assignments(&slab.text.set)?;
     let names = set.into_iter().map(|(name, _)| name);
     let indexed = names.filter(|name| name.ends_with(|c: char| c.is_ascii_digit()));
