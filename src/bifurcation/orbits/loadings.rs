@@ -27,7 +27,7 @@ const BEYOND: f64 = 2.0;
 /// asymmetric ones, from pitchforks of orbits that none of these has come to, and from period doublings.
 ///
 /// # Errors
-/// Those of [`BranchRequest::checked`], of the equilibria and of the flow; [`Error::TooManyPoints`](crate::Error::TooManyPoints);
+/// Those of [`BranchRequest::checked`], of the equilibria and of the flow; [`Error::TooManyPoints`];
 /// that a branch ends early is none.
 pub fn branch(request: &BranchRequest, seen: EventObserver<'_>) -> Result<()> {
     request.checked()?;
