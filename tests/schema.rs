@@ -396,7 +396,7 @@ const BRANCH: [&str; 16] = [
     "symmetry",
 ];
 
-/// Of equilibria.
+/// Branches of equilibria.
 const GROWTH: [&str; 10] = [
     "eigenvalue_1_re",
     "eigenvalue_1_im",

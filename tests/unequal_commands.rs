@@ -380,6 +380,16 @@ fn plans_say_that_the_interfaces_differ() {
 }
 
 #[test]
+fn equilibria_of_more_than_two_that_differ_are_refused_with_what_takes_them() {
+    let ended = twinslip(
+        "equilibria --interfaces 3 --driving 10 --stiffness 0.14 --set residual_strength_3=1",
+    );
+    assert_eq!(ended.code, 2, "{}", ended.err);
+    let said = "--set residual_strength_3: this command takes more than two interfaces only if they are equal";
+    assert!(ended.err.contains(said), "{}", ended.err);
+}
+
+#[test]
 fn what_is_wrong_is_refused_in_one_sentence() {
     let model = "equilibria --driving 10 --stiffness 0.14";
     for (set, sentence) in [

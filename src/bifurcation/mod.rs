@@ -275,7 +275,7 @@ pub struct BranchRow {
     pub verdict: Verdict,
     /// What is special here.
     pub label: Option<Label>,
-    /// Of an equilibrium, what there is beside.
+    /// The fields that only equilibria have.
     pub equilibrium: Option<equilibria::EquilibriumOfRow>,
 }
 

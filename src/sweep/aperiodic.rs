@@ -1,7 +1,7 @@
 //! Aperiodic motion: runs that close in on nothing, which are tori, chaos, or neither yet.
 
+use super::classify::{Classifier, Settled, alike, begun, steady};
 use super::finite_difference_exponent::stretching;
-use super::judge::{Judge, Settled, alike, begun, steady};
 use super::watch::{SweepRun, see};
 use crate::integrate::Control;
 use crate::section::{
@@ -21,8 +21,8 @@ type Undecided = &'static str;
 
 /// A torus or chaos, or why nothing can be said. Where there is a stable steady state too, chaos may be but a way to it: it is waited for,
 /// and nothing said in the end.
-pub(super) fn wandering(judge: &mut Judge, run: &SweepRun) -> Result<Settled, Undecided> {
-    let settings = &judge.settings;
+pub(super) fn wandering(classifier: &mut Classifier, run: &SweepRun) -> Result<Settled, Undecided> {
+    let settings = &classifier.settings;
     let (rtol, max_steps, lyapunov) = (settings.rtol, settings.max_steps, settings.lyapunov);
     let n = run.returns().len();
     let last = run.recorder.returns.len() >= settings.max_returns;
@@ -56,7 +56,7 @@ pub(super) fn wandering(judge: &mut Judge, run: &SweepRun) -> Result<Settled, Un
                 "its returns are irregular, but there is a stable steady state, to which they may lead; raise `max_returns`",
             );
         }
-        return match chaos(judge, run) {
+        return match chaos(classifier, run) {
             Some(told) => told,
             None if last || run.lane.is_none() => with_tangents(run, max_steps),
             None => Err("nearby runs behave differently"),
@@ -70,9 +70,9 @@ pub(super) fn wandering(judge: &mut Judge, run: &SweepRun) -> Result<Settled, Un
 
 /// Chaos of two equal interfaces, by the exponents along the last returns: of ever more, until they tell. `None` where no runs beside it can be
 /// compared with it.
-fn chaos(judge: &mut Judge, run: &SweepRun) -> Option<Result<Settled, Undecided>> {
+fn chaos(classifier: &mut Classifier, run: &SweepRun) -> Option<Result<Settled, Undecided>> {
     run.lane?;
-    let rtol = judge.settings.rtol;
+    let rtol = classifier.settings.rtol;
     let all = run.returns();
     let settled = all.len() / 2;
     let mut count = *FOR_EXPONENTS.start();
@@ -82,7 +82,7 @@ fn chaos(judge: &mut Judge, run: &SweepRun) -> Option<Result<Settled, Undecided>
             return Some(Err("too few returns for exponents; raise `max_returns`"));
         }
         let late: &[Return] = &all[all.len() - count..];
-        let found = stretching(run, late, &mut judge.flows, rtol)?;
+        let found = stretching(run, late, &mut classifier.flows, rtol)?;
         let made = aperiodic(&run.surface, late, rtol, Some(found.known()));
         if made.regime == Regime::Chaotic {
             let mut told = told(run, Regime::Chaotic);

@@ -1,6 +1,6 @@
 //! The stable equilibria that a run comes near, with neighbourhoods that no run leaves: it need not be followed there, where it converges slowly.
 //!
-//! Of equations that are known over boxes these are balls of a Lyapunov function, certain by interval arithmetic. Of others they are boxes in the
+//! For equations that are known over boxes these are balls of a Lyapunov function, certified by interval arithmetic. For others they are boxes in the
 //! coordinates z = W^-1 x of the eigenvectors of J(x_0), x the distance from the equilibrium. Each mode has
 //! d|z_i|/dt <= -s_i |z_i| + H_ijk |z_j| |z_k| / 2, -s_i the real part of its eigenvalue and H_ijk a bound on the second derivative of its rate
 //! along two modes. Where the last sum is less than s_i r_i for all i, no run leaves the box |z_i| <= r_i, nor any smaller one of its shape. A slow

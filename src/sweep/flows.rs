@@ -10,7 +10,7 @@ use crate::integrate::{
 use crate::model::Loading;
 use std::rc::Rc;
 
-/// What advances runs.
+/// The integrators that advance runs.
 pub(super) struct Flows {
     /// Lanes have one law.
     lanes: Option<(AnyLaw, Batch)>,
@@ -45,7 +45,7 @@ impl Flows {
         self.lanes = None;
     }
 
-    /// What advances a single run.
+    /// The integrator of a single run.
     pub fn one(&mut self) -> &mut AnyIntegrator {
         &mut self.one
     }

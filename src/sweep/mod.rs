@@ -9,10 +9,10 @@
 
 mod aperiodic;
 mod attraction;
+mod classify;
 mod closing;
 mod finite_difference_exponent;
 mod flows;
-mod judge;
 mod orbit;
 mod points;
 mod range;

@@ -14,7 +14,7 @@ use std::fmt::Debug;
 
 /// Systems by the values of the parameters that vary.
 pub trait SystemPoints: Debug + Send + Sync {
-    /// What rows tell of a point, dimensionless.
+    /// The parameters that rows have, dimensionless.
     fn parameters(&self, values: &[f64]) -> Vec<f64>;
 
     /// The system there, with the start of this number, from 0; random ones are made by the stream.
@@ -29,7 +29,7 @@ pub trait SystemPoints: Debug + Send + Sync {
 pub struct SystemPoint {
     /// These units.
     pub units: MotionUnits,
-    /// What moves.
+    /// The vector field.
     pub field: AnyField<'static>,
     /// Where its run starts.
     pub start: Vector,
@@ -39,7 +39,7 @@ pub struct SystemPoint {
     pub equal_parts: bool,
     /// Two equal interfaces with a law that is built in: many of their runs can be computed at once.
     pub lane: Option<(AnyLaw, Loading)>,
-    /// The same equations over boxes, where they are known: by these it is certain that a run has come to a stable equilibrium.
+    /// The equations over boxes, where they are known: they certify that a run has come to a stable equilibrium.
     pub enclosed: Option<Enclosure>,
 }
 
@@ -64,7 +64,7 @@ pub enum SectionPlace {
 }
 
 impl SectionPlace {
-    /// The same of a system in these units, which has no time of its own to wait.
+    /// The place of the section in these units; the system has no time of its own to wait.
     pub fn inward(self, units: &MotionUnits) -> Self {
         match self {
             SectionPlace::Untimed(mut surface) => {

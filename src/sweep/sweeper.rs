@@ -1,7 +1,7 @@
-//! What computes the rows of a sweep.
+//! The computation of the rows of a sweep.
 
+use super::classify::{Classifier, Settled, undecided};
 use super::flows::Leg;
-use super::judge::{Judge, Settled, undecided};
 use super::start::{missing, point};
 use super::watch::SweepRun;
 use super::{SweepRow, SweepSettings};
@@ -40,7 +40,7 @@ use std::rc::Rc;
 /// # Ok(())
 /// # }
 /// ```
-pub struct Sweeper(Judge);
+pub struct Sweeper(Classifier);
 
 /// A run that is followed, or the row of a point that there is not.
 type Begun = std::result::Result<SweepRun, Box<Settled>>;
@@ -50,7 +50,7 @@ impl Sweeper {
     /// Those of [`SweepSettings::checked`].
     pub fn new(settings: &SweepSettings) -> Result<Self> {
         settings.checked()?;
-        Ok(Sweeper(Judge::new(settings)?))
+        Ok(Sweeper(Classifier::new(settings)?))
     }
 
     /// One that takes its runs one after the other, without lanes: to measure these by. Its rows differ by rounding.
@@ -123,7 +123,7 @@ impl Sweeper {
         Ok(SweepRun::new(point, row, settings))
     }
 
-    /// What the runs settle on: all go on side by side until each is to be classified, and those that are not settled then go round again.
+    /// The regimes of these runs: all go on side by side until each is to be classified, and those that are not settled then go round again.
     fn settle(&mut self, begun: Vec<Begun>) -> Vec<Settled> {
         let mut told = Vec::with_capacity(begun.len());
         let (mut runs, mut active) = (Vec::new(), Vec::new());
@@ -179,7 +179,7 @@ impl Sweeper {
         let mut observer = |k: usize, step: &AnyStep<'_>| runs[active[k]].1.step(step);
         let ends = self.0.flows.flow(&legs, &mut observer);
         for (leg, &i) in legs.iter().zip(active) {
-            runs[i].1.is_late(leg.t.1);
+            runs[i].1.end_leg(leg.t.1);
         }
         ends.into_iter().map(Result::err).collect()
     }

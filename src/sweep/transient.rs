@@ -1,6 +1,6 @@
 //! The transient of a system of which no scale of time is known: how long it takes to swing, and between which values.
 
-use super::judge::Judge;
+use super::classify::Classifier;
 use super::points::SectionPlace;
 use super::watch::{BETWEEN_LOOKS, SweepRun, caught, see_all};
 use crate::error::Result;
@@ -19,7 +19,7 @@ const AT_REST: f64 = 1e-7;
 /// A run may be away from its section for so many times the last window.
 const PATIENCE: f64 = 4.0;
 
-impl Judge {
+impl Classifier {
     /// Lets the transient pass, puts the section in the middle of what the run then swings through where that is asked for, and measures
     /// the time that it may wait for a return.
     ///

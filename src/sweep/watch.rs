@@ -1,8 +1,8 @@
 //! A run on its way: its returns, how far it swings, and whether it is to be classified yet.
 
 use super::attraction::Attraction;
+use super::classify::FIRST_STAGE;
 use super::closing::{FEWEST_TO_CLOSE, closing};
-use super::judge::FIRST_STAGE;
 use super::points::{Enclosure, SectionPlace, SystemPoint};
 use super::slow_convergence::Leap;
 use super::{SweepRow, SweepSettings};
@@ -26,13 +26,14 @@ pub(super) const BETWEEN_LOOKS: usize = 48;
 const LONGER: f64 = 10.0;
 /// A run that swings by less is at rest.
 pub(super) const SWING: f64 = 1e-7;
-/// How close to an unstable equilibrium a run is held at it, and how close two equal parts are to each other when they move alike.
+/// A run so near an unstable equilibrium is held at it.
 const HELD: f64 = 1e-5;
-const ALIKE: f64 = 1e-6;
+/// Equal parts that differ by less, all along, move in phase.
+pub(super) const ALIKE: f64 = 1e-6;
 /// By how much of its size a run is let go from an unstable state or orbit, and how often.
 const PUSH: f64 = 1e-3;
 const MOST_PUSHES: usize = 2;
-/// Of a run whose section is known, the range is not recorded before so many returns: the turns of a variable take time.
+/// Returns before the range of a run with a known section is recorded: turns of a variable take time to compute.
 const RANGE_FROM: usize = 512;
 /// A state beyond this, in its unit, goes to infinity.
 const INFINITE: f64 = 1e100;
@@ -44,7 +45,7 @@ const LEAST_UNIT: f64 = 1e-2;
 
 /// A run of a sweep.
 pub(super) struct SweepRun {
-    /// What is known of its point.
+    /// The row, with what is known of its point.
     pub row: SweepRow,
     pub units: MotionUnits,
     /// Shared with what advances the run.
@@ -70,7 +71,7 @@ pub(super) struct SweepRun {
     pub candidate: Option<usize>,
     /// The least and the greatest value of every variable since the last stage began; of a run whose section is known, of that variable alone.
     pub reach: Vec<(f64, f64)>,
-    /// What distances are measured in.
+    /// The unit of distances.
     pub unit: f64,
     /// How often it was let go.
     pub pushes: usize,
@@ -181,7 +182,7 @@ impl SweepRun {
     }
 
     /// Sees that a leg of the run ends at a time: before it the run had to return.
-    pub fn is_late(&mut self, end: f64) {
+    pub fn end_leg(&mut self, end: f64) {
         if self.time >= end && self.recorder.ended.is_none() && self.hopeless.is_none() {
             let error = self.recorder.no_return(&self.surface, end);
             self.recorder.ended = Some(Ended::Failed(error));

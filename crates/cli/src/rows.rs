@@ -223,7 +223,7 @@ impl SlabRow for BranchRow {
     }
 }
 
-/// What there is of an equilibrium beside; of more than two interfaces the columns have clusters.
+/// The fields of an equilibrium beside those of the contract; for more than two interfaces the columns have clusters.
 fn equilibrium(cell: &dyn Fn(&str) -> String, units: &Units) -> Option<EquilibriumOfRow> {
     let number = |name: &str, quantity| {
         let x = cell(name).parse::<f64>().ok()?;

@@ -248,7 +248,7 @@ impl<'a> Course<'a> {
         None
     }
 
-    /// What is at points from one at which there is something towards one at which there is nothing, as close as there is.
+    /// Bisects between a point with a solution and one without, and returns the last point that has one.
     pub fn up_to<T>(
         &self,
         inside: &SteadyPoint<'a>,

@@ -87,7 +87,7 @@ pub(super) struct ShareHopf<'a> {
     pub share: Share,
     pub point: SteadyPoint<'a>,
     pub stiffness: DoubleDouble,
-    /// What varies on the way to it: the other one is exact.
+    /// The parameter that varies along the path to it; the other one is exact.
     pub along: Parameter,
     /// How far the rate that is the coordinate may be off along the curve of Hopf points, where a condition on these sets it.
     pub off: f64,
@@ -192,7 +192,7 @@ impl<'a> ShareHopf<'a> {
         [by_x.map(DoubleDouble::to_f64), by_k]
     }
 
-    /// What V_H, K and omega^2 may be off.
+    /// Error bounds of V_H, K and omega^2.
     fn budgets(&self) -> [f64; 3] {
         let mut all = effects(self.curve.law(), |law| {
             let curve = self.curve.of(law);

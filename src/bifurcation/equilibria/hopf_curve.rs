@@ -95,7 +95,7 @@ impl<'a> Root<'_, 'a> {
         knots: &[Knot<'a>],
         folds: &[Fold<'a>],
     ) -> Result<Vec<CurvePoint<'a>>> {
-        /// What 31 digits leave of a slope that is zero: a law may have the same K throughout.
+        /// Rounding in 31 digits of a slope that is zero: a law may have the same K throughout.
         const LEFT: f64 = 1e-22;
         let knots = self.refined(request, knots);
         let plain = knots.iter();
@@ -210,7 +210,7 @@ impl<'a> Root<'_, 'a> {
 
     /// How far the zero x of a function may be off, which is known to so much. `None` where nothing is left of the zero.
     fn off(&self, x: f64, known: f64, f: &dyn Fn(&SteadyPoint<'a>) -> f64) -> Option<f64> {
-        /// Of the rate, relative, to see how the function changes.
+        /// Relative change of the rate by which the change of the function is measured.
         const CHANGE: f64 = 1e-6;
         /// A zero that may be off by a larger part of the rate is none.
         const PLACED: f64 = 1e-3;

@@ -105,7 +105,7 @@ impl<'a> Run<'a, '_> {
         Ok(ControlFlow::Continue(()))
     }
 
-    /// What of a curve lies in the ranges.
+    /// The part of a curve that lies in the ranges.
     fn pieces(
         &mut self,
         root: Root<'_, 'a>,

@@ -1,11 +1,11 @@
-//! What the row of an equilibrium tells that the row of an orbit does not.
+//! The fields that only rows of equilibria have.
 
 use crate::equilibrium::ClusterEigenvalue;
 
 /// The clusters and eigenvalues of an equilibrium of equal interfaces.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EquilibriumOfRow {
-    /// Of more than two interfaces, how many slide on the slow, the middle and the fast branch of the steady curve.
+    /// The partition: how many of more than two interfaces slide on the slow, the middle and the fast branch of the steady curve.
     pub share: Option<[usize; 3]>,
     /// Interfaces that slide alike, slowest first.
     pub clusters: Vec<ClusterOfRow>,

@@ -65,7 +65,7 @@ pub struct GeneralSystem<'a> {
     pub family: &'a dyn ParametrisedField,
     /// Of two equal parts the family of states in which they move alike, in the same coordinates.
     pub alike: Option<&'a dyn ParametrisedField>,
-    /// Of two equal parts the family in the variables that keep their difference where the others lose it.
+    /// For two equal parts, the family in variables that keep the digits of their difference.
     pub difference: Option<&'a dyn ParametrisedField>,
     /// Groups of variables whose exchange changes nothing: solutions that are mirror images of each other are one.
     pub interchangeable: &'a [Vec<usize>],
@@ -94,9 +94,9 @@ pub struct GeneralBranch<'a> {
     pub orbit: Option<ContinuationPoint>,
     /// Where orbits begin if no Hopf point leads to any.
     pub found: Option<FoundOrbits<'a>>,
-    /// Of two equal parts the Hopf points, where they are known otherwise than from branches of equilibria.
+    /// The Hopf points of two equal parts, where they are known without branches of equilibria.
     pub hopfs: Option<KnownHopfPoints<'a>>,
-    /// Of two equal parts: one symmetry, or both.
+    /// For two equal parts: one symmetry, or both.
     pub symmetry: Option<Symmetry>,
     /// How many times orbits may double their period.
     pub doublings: usize,
@@ -123,7 +123,7 @@ pub struct GeneralCurve<'a> {
     pub orbit: Option<ContinuationPoint>,
     /// Where curves of orbits begin, where that is known otherwise than from branches of orbits.
     pub seeds: Option<&'a dyn OrbitSeeds>,
-    /// Of two equal parts: orbits of one symmetry, or of both.
+    /// For two equal parts: orbits of one symmetry, or of both.
     pub symmetry: Option<Symmetry>,
     /// Where the way is told that bifurcations of orbits go.
     pub criticality: Classified,
@@ -191,7 +191,7 @@ pub struct GeneralPoint {
     pub number: usize,
     /// What is special here.
     pub label: Option<Label>,
-    /// Of two equal parts, whether both move alike on the branch or curve, where that is known.
+    /// For two equal parts, whether both move in phase on the branch or curve, where that is known.
     pub symmetry: Option<Symmetry>,
     /// The coordinates.
     pub at: [f64; 2],
@@ -378,9 +378,9 @@ impl GeneralPoint {
         Some(together + within.map(|one| one.multiplicity).sum::<usize>())
     }
 
-    /// What the real part of an eigenvalue, or ln |mu|, may be where it is zero.
+    /// Threshold below which the real part of an eigenvalue, or ln |mu|, counts as zero.
     fn neutral(&self) -> f64 {
-        /// What rounding leaves of an eigenvalue that is zero, against the largest.
+        /// Rounding of an eigenvalue that is zero, as a fraction of the largest.
         const NEUTRAL: f64 = 1e-12;
         match &self.solution {
             GeneralSolution::Equilibrium { eigenvalues, .. } => {

@@ -120,7 +120,7 @@ impl OrbitBranch<'_, '_, '_> {
 
 /// Whether all multipliers of an orbit are about those at a Hopf point. Else the branch has yet to pass what makes them so.
 pub(super) fn grows_as_at(hopf: &GeneralPoint, chart: Chart<'_>, orbit: &Regular) -> bool {
-    /// What a logarithm may be off, of itself and beside that; and below which all are as good as none.
+    /// Allowed difference of a logarithm, relative and absolute; below the second constant a multiplier counts as zero.
     const OFF: f64 = 0.3;
     const NONE: f64 = -20.0;
     let (GeneralSolution::Equilibrium { eigenvalues, .. }, Some(period)) =

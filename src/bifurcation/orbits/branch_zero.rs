@@ -1,4 +1,4 @@
-//! What bifurcates on a branch of periodic orbits, and which branches begin there.
+//! Bifurcations on a branch of periodic orbits, and the branches that begin there.
 
 use super::branches::Doubling;
 use super::multipliers_together::is_real;
@@ -85,7 +85,7 @@ impl OrbitBranch<'_, '_, '_> {
         if ends { Break(()) } else { Continue(()) }
     }
 
-    /// What a zero means; nothing, or nothing new, for some.
+    /// The label of a zero; `None` where it is no bifurcation, or one that is known.
     fn label(
         &mut self,
         (palc, before): Step<'_, '_, '_>,

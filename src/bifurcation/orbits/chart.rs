@@ -17,11 +17,11 @@ use crate::orbit::{
 /// The variables of an orbit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Variables {
-    /// Of all states.
+    /// All states.
     Whole,
-    /// Of states in which equal parts move alike.
+    /// The states in which equal parts move in phase.
     Alike,
-    /// Of all states but those, with the logarithm of the parts' difference.
+    /// The other states, with the logarithm of the parts' difference.
     Difference,
 }
 
@@ -90,7 +90,7 @@ impl<'a> Chart<'a> {
         self.variables == Variables::Alike && self.family().dimension() < self.whole.dimension()
     }
 
-    /// What is watched for bifurcations along a branch. Without a symmetry folds are found by their multiplier, as along a canard the parameter turns
+    /// The test functions along a branch. Without a symmetry folds are found by their multiplier, as along a canard the parameter turns
     /// within its rounding; that multiplier is 1 at pitchforks too, so that where these have a test function of their own a fold is a turn.
     pub fn watches(&self) -> Vec<WatchedFunction> {
         let dimension = self.family().dimension();

@@ -171,7 +171,7 @@ impl Decided {
     }
 }
 
-/// What a change of the way that a pitchfork goes is.
+/// The label where the criticality of a pitchfork changes.
 const DEGENERATE: &str = "degenerate pitchfork: a curve of folds of asymmetric orbits ends here";
 
 /// The cubic coefficient at an orbit of a curve; `None` for folds.
@@ -225,7 +225,7 @@ impl HalfCurve<'_, '_, '_> {
         way(self.chart, self.kind.test_function, site)
     }
 
-    /// The same where it is asked for at every point.
+    /// The criticality at every point, where that is asked for.
     pub fn wanted_way(&self, site: &ContinuationPoint) -> Option<Way> {
         match self.kind.curve.criticality {
             Classified::Every => self.way(site),

@@ -99,7 +99,7 @@ impl<'k, 'c, 'a> Beginning<'k, 'c, 'a> {
         }))
     }
 
-    /// What is told of the orbit where both ways begin, which neither comes to again.
+    /// Reports the orbit at which both directions begin, which neither meets again.
     fn first(&self) -> Vec<GeneralEvent> {
         self.half(&mut |_| Continue(())).first(&self.here)
     }

@@ -17,7 +17,7 @@ use std::sync::OnceLock;
 /// A curve of folds of orbits this much smaller than the largest shrinks to an equilibrium.
 const SHRUNK: f64 = 0.05;
 
-/// Those in the ranges of a curve, as orbits that have shrunk to a point, once they were asked for.
+/// The points in the ranges of a curve, as orbits that have shrunk to a point; computed at first use.
 #[derive(Debug, Default)]
 pub(super) struct DegenerateHopfPoints(OnceLock<Vec<GeneralPoint>>);
 
@@ -29,7 +29,7 @@ impl CurvesOfKind<'_, '_> {
         orbit: &ContinuationPoint,
         largest: &Vector,
     ) -> Option<GeneralPoint> {
-        /// Of the ranges, and of the period; and of how far the orbit goes.
+        /// Tolerances in the ranges, in the period, and in the size of the orbit.
         const NEAR: f64 = 0.05;
         const BESIDE: f64 = 2.0;
         let ContinuationPoint { shooting, at } = orbit;

@@ -15,7 +15,7 @@ pub(super) struct End {
 }
 
 impl End {
-    /// Of an orbit in these variables.
+    /// The end that an orbit in these variables makes.
     ///
     /// # Errors
     /// Those of the flow along it.

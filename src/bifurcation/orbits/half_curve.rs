@@ -102,7 +102,7 @@ impl<'c, 'a> CurvesOfKind<'c, 'a> {
         watches
     }
 
-    /// What is asked for at a value of a coordinate: the end of the range, or to land on it.
+    /// The purpose of a value of a coordinate: the end of the range, or a point to land on.
     fn asked(&self, i: usize, x: f64) -> Option<Label> {
         let (from, to) = self.curve.ranges[i];
         match x == from || x == to {

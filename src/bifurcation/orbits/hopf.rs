@@ -56,7 +56,7 @@ fn hopf_points(branch: &GeneralBranch<'_>) -> Result<Vec<HopfBeginning>> {
     Ok(found)
 }
 
-/// Of these Hopf points those at equilibria of this symmetry, with small orbits in the variables of that.
+/// The Hopf points at equilibria of this symmetry, with small orbits in its variables.
 pub(super) fn of_symmetry(
     system: &GeneralSystem<'_>,
     all: &[HopfBeginning],

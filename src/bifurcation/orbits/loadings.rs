@@ -169,7 +169,7 @@ fn hopf_beginnings(
 }
 
 impl BranchRequest {
-    /// What is found, in V_H and K.
+    /// An event in V_H and K.
     fn event(&self, event: GeneralEvent) -> Result<Event> {
         let point = match event {
             GeneralEvent::Special(point) => {

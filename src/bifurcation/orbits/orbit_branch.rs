@@ -40,7 +40,7 @@ pub(super) struct OrbitBranch<'s, 'b, 'a> {
     pub folds: Folds,
     /// Whether a fold was met on the step that is looked at.
     pub turned: bool,
-    /// What seems to be a fold there, as the parameter turns, but could not be found as one.
+    /// A point at which the parameter turns, but at which no fold could be solved for.
     pub unsure: Option<(GeneralPoint, Regular)>,
     pub outside: Outside,
     /// The label and parameter of the last fold, period doubling or pitchfork, and whether further ones are listed.

@@ -10,7 +10,7 @@ use crate::orbit::{
 };
 use std::f64::consts::PI;
 
-/// What the accuracy of a continuation leaves of ln |mu| that is zero.
+/// Error of a continuation in an ln |mu| that is zero.
 const NEUTRAL: f64 = 1e-6;
 
 /// An orbit as a point, without its parameters.
@@ -96,7 +96,7 @@ pub(super) fn refined_point(
 
 /// An orbit beside a bifurcation in its last digits, and what its largest multiplier is known to; `None` where that is not known.
 pub(super) fn sharper(chart: Chart<'_>, number: usize, orbit: &Regular) -> Option<GeneralPoint> {
-    /// What steps may err by, and standard deviations of what is noise.
+    /// Error allowed in a step, and the number of standard deviations of noise.
     const FINE: f64 = 1e-15;
     const DEVIATIONS: f64 = 5.0;
     let mut fine = Corrector::new(chart.family(), FINE).ok()?;

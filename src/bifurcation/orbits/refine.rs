@@ -33,7 +33,7 @@ impl SpecialOrbit {
         (&self.nodes, &self.durations)
     }
 
-    /// The same over the plane of its parameters in the other order.
+    /// A point over the plane of its parameters in the other order.
     pub(super) fn exchanged(self) -> Self {
         let meets = |watch: WatchedFunction| match watch {
             WatchedFunction::Turn(i) => WatchedFunction::Turn(1 - i),

@@ -30,7 +30,7 @@ pub(crate) enum EquilibriumCurve<'a> {
     Shares(SteadyCurve<'a>),
 }
 
-/// What is known under the stress of one rate, whatever the share: in 31 digits as soon as that is asked for.
+/// The steady state under the stress of one rate, for any partition; in 31 digits once these are asked for.
 #[derive(Debug, Clone)]
 pub(crate) struct SteadyPoint<'a> {
     curve: EquilibriumCurve<'a>,
@@ -56,7 +56,7 @@ impl<'a> EquilibriumCurve<'a> {
         }
     }
 
-    /// The same of another law, to see its effect: its extrema are known roughly. `None` where it has others.
+    /// The steady curve of another law, to measure its effect: its extrema are known roughly. `None` where it has others.
     pub fn of<'b>(&self, law: &'b AnyLaw) -> Option<EquilibriumCurve<'b>> {
         match self {
             EquilibriumCurve::Alike(_) => Some(EquilibriumCurve::Alike(law)),

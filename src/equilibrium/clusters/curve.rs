@@ -45,7 +45,7 @@ impl<'a> SteadyCurve<'a> {
         Some(Self::cut(law, fastest, &extrema?))
     }
 
-    /// The same with the extrema as doubles.
+    /// The steady curve with the extrema as doubles.
     pub fn rough(law: &'a AnyLaw, fastest: f64) -> Self {
         let extrema = law.steady_extrema().into_iter().map(Interval::constant);
         Self::cut(law, fastest, &extrema.collect::<Vec<_>>())

@@ -96,7 +96,7 @@ impl AnySystem {
         }
     }
 
-    /// What it is called in titles, where it has a name of its own.
+    /// Its name in titles, for a user-defined system or law.
     pub fn name(&self) -> Option<&str> {
         self.formulas().map(TextModel::name)
     }
@@ -127,7 +127,7 @@ impl AnySystem {
         }
     }
 
-    /// What a state measures.
+    /// The quantity that a state measures.
     pub fn quantity(&self, state: usize) -> Quantity {
         match (self.slides(), state) {
             (false, _) => Quantity::Number,
@@ -293,7 +293,7 @@ impl AnySystem {
         }
     }
 
-    /// Those with the logarithms of states that fell below what doubles hold; `None` where there are none.
+    /// The units with the logarithms of states that fell below the range of doubles; `None` where none did.
     pub(super) fn units_below_doubles(
         &self,
         units: &MotionUnits,
@@ -336,7 +336,7 @@ impl AnySystem {
         }
     }
 
-    /// What the variables of power series are.
+    /// The variables in which power series are made.
     pub(super) fn series_variables(&self) -> SeriesVariables {
         match &self.0 {
             Kind::BuiltIn(..) => SeriesVariables::LogStates,

@@ -13,7 +13,7 @@ use twinslip::model::{self, Loading, TextSystem};
 pub enum Subspace {
     /// All of them.
     Whole,
-    /// Those in which two equal interfaces move alike: one state stands for both.
+    /// The states in which two equal interfaces move in phase: one state stands for both.
     Symmetric,
 }
 
@@ -34,7 +34,7 @@ impl Subspace {
 
 /// The equations of a part of a run.
 pub(super) enum Equations<'a> {
-    /// Those of interfaces with a built-in law; `rate` is that of V_H.
+    /// Interfaces with a built-in law; `rate` is the rate of V_H.
     BuiltIn {
         system: &'a System,
         loading: Loading,
@@ -49,7 +49,7 @@ impl Equations<'_> {
     /// The field in these units.
     ///
     /// # Errors
-    /// Those of the formulas.
+    /// The formulas of a user-defined system or law.
     pub fn field(&self, units: &MotionUnits) -> Result<AnyField<'_>> {
         match self {
             Equations::Formulas(system, _) => units.field(system),

@@ -28,9 +28,9 @@ pub struct LawPlan {
 /// Whose laws they are.
 #[derive(Debug, Clone, PartialEq)]
 enum Laws {
-    /// Of interfaces with a built-in law, which has closed forms.
+    /// Interfaces with a built-in law, which has closed forms.
     Closed(Box<System>),
-    /// Of interfaces with a law by its formulas.
+    /// Interfaces with a law given by its formulas.
     Formulas(Box<TextModel>),
 }
 

@@ -1,4 +1,4 @@
-//! What is seen of a run: rows, slips, events and the points of a picture.
+//! The observer of a run: rows, slips, events and the points of a picture.
 
 use super::column::Column;
 use super::event::Detector;

@@ -92,7 +92,7 @@ const BEGIN: f64 = 0.0;
 /// A run, checked, and only what its outputs need.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
-    /// What moves; with a program at V_H before its first change, which may be 0.
+    /// The system; with a program, at V_H before its first change, which may be 0.
     pub system: AnySystem,
     /// How V_H changes on the way, where it does.
     pub program: Option<Program>,

@@ -2,7 +2,7 @@
 
 use super::options::{ModelOptions, SlabOptions};
 use super::system::{HEALING_TIME, NORMAL_STRESS, REFERENCE_RATE, SLIP_LENGTH};
-use super::unequal::of_one;
+use super::unequal::{is_of_one, of_one};
 use twinslip::error::{Error, Result};
 use twinslip::friction::{AnyLaw, Law, Parameters};
 
@@ -133,7 +133,8 @@ impl SlabOptions {
 
     /// The value of a parameter that is neither V_H nor K. Those of one interface are seen to where there is a system.
     fn put(&mut self, name: &str, value: f64) -> Result<()> {
-        if of_one("set", name)?.is_some() {
+        let is_of_one_of_many = self.count() > 2 && is_of_one(name);
+        if is_of_one_of_many || of_one("set", name)?.is_some() {
             return Ok(());
         }
         if ["slip_length", "normal_stress"].contains(&name) && !self.si {
@@ -162,7 +163,7 @@ const UNITS: [(&str, f64); 2] = [
 ];
 
 impl ModelOptions {
-    /// The same with a value for each free parameter by which SI units are made: the geometric mean of the ends of its range. Units, and
+    /// These options with a value for each free parameter by which SI units are made: the geometric mean of the ends of its range. Units, and
     /// what has a default in these, then do not change with the parameter.
     ///
     /// # Errors

@@ -296,7 +296,7 @@ impl System {
         Ok((system, loading))
     }
 
-    /// The same interfaces with these units of stress, length and time, which are in SI and have the same V*.
+    /// These interfaces measured in other SI units of stress, length and time with the same V*.
     ///
     /// # Errors
     /// Those of [`UnequalLaws::new`].

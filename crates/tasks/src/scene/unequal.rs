@@ -60,6 +60,12 @@ impl OfOne {
     pub fn read(options: &SlabOptions) -> Result<Self> {
         let mut all = OfOne::default();
         for (name, value) in assignments(&options.text.set)? {
+            if options.count() > 2 && is_of_one(name) {
+                let what = format!(
+                    "`set` {name}: this command takes more than two interfaces only if they are equal; `branch equilibria` and `integrate` take others"
+                );
+                return Err(Error::Input(what));
+            }
             let Some((place, interface)) = of_one("set", name)? else {
                 continue;
             };

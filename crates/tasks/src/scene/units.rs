@@ -35,7 +35,7 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// What a parameter of interfaces measures, by its name; one of one interface ends in its number.
+    /// The quantity that a parameter of interfaces measures, by its name; the name of a parameter of one interface ends in its index.
     pub fn of_parameter(name: &str) -> Self {
         let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
         match stem.strip_suffix('_').unwrap_or(name) {
@@ -198,7 +198,7 @@ impl Units {
         }
     }
 
-    /// Of the numbers in the user's units that are x inward, the one of 15 digits, where there is one.
+    /// The number of at most 15 digits in the user's units that is x inward, where there is one.
     fn as_given(&self, quantity: Quantity, x: f64) -> Option<f64> {
         let outward = x * self.factor(quantity);
         let round = format!("{outward:.14e}").parse().ok()?;

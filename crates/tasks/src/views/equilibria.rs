@@ -97,7 +97,7 @@ pub fn equilibria_columns(interfaces: usize) -> Vec<Column<ClassifiedEquilibrium
     columns
 }
 
-/// Those of the eigenvalues of so many interfaces, of more than two with how often each counts and in which direction it points.
+/// The columns of the eigenvalues; for more than two interfaces with their multiplicity and direction.
 pub(super) fn eigenvalue_columns<R: 'static>(
     interfaces: usize,
     of: fn(&R) -> &[ClusterEigenvalue],

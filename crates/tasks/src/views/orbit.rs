@@ -66,7 +66,7 @@ fn of_state(i: usize, orbit: &Orbit) -> usize {
     i.min(orbit.point.len() - 1)
 }
 
-/// What orbits of interfaces are looked at for.
+/// The columns that orbits of interfaces have beside those of all systems.
 fn of_interfaces() -> [Column<Orbit>; 4] {
     use Quantity::{SlipRate, State, Stress};
     [

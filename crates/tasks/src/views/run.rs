@@ -276,7 +276,7 @@ fn each(
     }
 }
 
-/// Of the interfaces or clusters, counted from 1.
+/// One series for each interface or cluster, counted from 1.
 const SUBSCRIPTS: [&str; 10] = ["₀", "₁", "₂", "₃", "₄", "₅", "₆", "₇", "₈", "₉"];
 
 /// `v₁ = v₂` from `v` and `₁ = ₂`.

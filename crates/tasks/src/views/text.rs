@@ -1,4 +1,4 @@
-//! What user-defined systems show.
+//! Columns and titles of user-defined systems.
 
 use super::diagram::value;
 use crate::scene::{AnySystem, Column, Described, Quantity, TextEquilibrium, TextModel, Units};
@@ -60,7 +60,7 @@ pub fn with_parameters(model: &TextModel) -> String {
     titled(Some(model.name()), &all, model.units())
 }
 
-/// The same of any system.
+/// The title of a picture with the parameters of any system.
 pub(super) fn parameters_of(system: &AnySystem) -> String {
     titled(system.name(), &system.parameters(), system.units())
 }

@@ -207,7 +207,7 @@ impl GeneralRow {
         columns
     }
 
-    /// Those of all eigenvalues of an equilibrium, and how many of them grow.
+    /// The columns of all eigenvalues of an equilibrium and of the number of unstable ones.
     fn eigenvalue_columns(dimension: usize) -> Vec<Column<Self>> {
         let of = |row: &Self, i: usize| {
             let known = row.eigenvalues.get(i).copied();

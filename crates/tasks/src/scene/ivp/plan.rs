@@ -178,7 +178,7 @@ fn started(chart: &Chart, start: &[f64], names: &[String]) -> Result<Vec<f64>> {
     }
 }
 
-/// What values are called: psi stands in the place of its logarithm.
+/// The names of the values: psi stands in the place of its logarithm.
 fn names(system: &AnySystem) -> Vec<String> {
     let states = system.states().into_iter();
     let name = |name: std::borrow::Cow<'static, str>| match system.slides() {

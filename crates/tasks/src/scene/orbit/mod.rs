@@ -23,7 +23,7 @@ use twinslip::sundials::MultistepMethod;
 /// A periodic orbit that is asked for, checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OrbitPlan {
-    /// What moves.
+    /// The system.
     pub system: AnySystem,
     /// How the orbit is looked for.
     search: Search,
@@ -260,7 +260,7 @@ fn method_name(choice: Choice) -> &'static str {
     run_method(choice).name()
 }
 
-/// What the plan says of dense output.
+/// The line of the plan about dense output.
 fn dense_output(rows: Option<Sampling>, picture: bool) -> &'static str {
     match (rows, picture) {
         (None, false) => "on, for the extremes alone",

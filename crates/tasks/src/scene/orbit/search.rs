@@ -22,13 +22,13 @@ use twinslip::orbit::{
 /// How an orbit is looked for, and computed once more.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Search {
-    /// Of one interface or two equal ones; of either symmetry where both will do: the one that runs settle on.
+    /// One interface or two equal ones; where no symmetry is asked for, the orbit that runs settle on.
     BySymmetry {
         slab: InterfaceSystem,
         query: Query,
         either: bool,
     },
-    /// Of two interfaces that differ.
+    /// Two interfaces that differ.
     Unequal(UnequalInterfaces, InitialGuess),
     /// From a start, at or near the orbit.
     FromStart {
@@ -37,7 +37,7 @@ pub(super) enum Search {
         period: Option<f64>,
         /// The units in which it is looked for.
         units: MotionUnits,
-        /// Those in which it was, where a state fell below what doubles hold.
+        /// The units in which it was found, where a state fell below the range of doubles.
         logarithmic: OnceLock<MotionUnits>,
     },
 }
@@ -207,7 +207,7 @@ impl Search {
     }
 }
 
-/// What is asked for; of interfaces that differ no orbit is symmetric.
+/// The symmetry that is asked for; interfaces that differ have no symmetric orbit.
 fn symmetry(name: Option<&str>, system: &System) -> Result<Symmetry> {
     let unknown = |name| Error::unknown("symmetry", name, &["symmetric", "asymmetric"]);
     let asked = name.map(|name| Symmetry::named(name).ok_or_else(|| unknown(name)));

@@ -31,7 +31,7 @@ const MOST_RETURNS: usize = 100_000_000;
 /// A return map, checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SectionPlan {
-    /// What moves.
+    /// The system.
     pub system: AnySystem,
     /// The states among which it stays.
     pub subspace: Subspace,

@@ -12,7 +12,7 @@ use twinslip::sweep::Range;
 const MOST: usize = 2;
 /// In SI the unit of stress changes with it.
 const DIRECT_EFFECT: &str = "direct_effect";
-/// What units are made of, of the first interface.
+/// The parameters of the first interface that units are made of.
 const UNITS: [&str; 3] = ["slip_length", "normal_stress", DIRECT_EFFECT];
 
 /// Whether the units of other numbers are made of a parameter.

@@ -28,7 +28,7 @@ pub struct TextSlab {
     places: Vec<Vec<usize>>,
     /// V_H, where it is given.
     pub(super) driving: Option<f64>,
-    /// What numbers are measured in.
+    /// The units of the numbers.
     pub(super) units: Units,
 }
 

@@ -1,4 +1,4 @@
-//! What the options say of interfaces that are made of a law's formulas: how many, in which units, and the parameters of each.
+//! Options of interfaces that are given by a law's formulas: their number, their units, and the parameters of each.
 
 use super::law_file::{DAMPING, LawFile, SCALES};
 use crate::scene::options::{ModelOptions, SlabOptions};

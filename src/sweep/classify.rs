@@ -5,7 +5,7 @@ use super::closing::{ARRIVED, apart};
 use super::flows::Flows;
 use super::orbit::{TOLERANCE, around};
 use super::slow_convergence::{Leap, SlowReturns, comes_as_said, to_rest};
-use super::watch::{SWING, SweepRun, are_alike, pushed};
+use super::watch::{ALIKE, SWING, SweepRun, are_alike, pushed};
 use super::{SweepRow, SweepSettings};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
@@ -13,8 +13,6 @@ use crate::field::Vector;
 use crate::integrate::{AnyIntegrator, Choice, MAX_STEPS, Tolerances};
 use crate::section::{Ended, Periodic, PeriodicSearch, Regime, at_equilibrium};
 
-/// Log states that differ by less, all along, are those of interfaces that move alike.
-const ALIKE: f64 = 1e-6;
 /// The step at which Newton's method ends; the error then is its square.
 const CONVERGED: f64 = 1e-5;
 /// Returns after which a run that has not settled is classified: each time twice as many.
@@ -31,22 +29,22 @@ const ON_ORBIT: f64 = 1e-5;
 const APART: f64 = 1e-4;
 
 /// Classifies runs; its integrators are used over and over.
-pub(super) struct Judge {
+pub(super) struct Classifier {
     pub settings: SweepSettings,
-    /// What advances the runs.
+    /// The integrators of the runs.
     pub flows: Flows,
-    /// Of orbits.
+    /// The integrator of orbits.
     fine: AnyIntegrator,
 }
 
-/// What is known of a run's end, and where the next one may start from it.
+/// The row of a run that has settled, and where the next run may start.
 pub(super) struct Settled {
     pub row: SweepRow,
     pub attractor: Option<Vector>,
 }
 
 impl Settled {
-    /// The same in the system's own units. Words have them already.
+    /// The row in the system's own units. Words have them already.
     pub fn outward(mut self, run: &SweepRun) -> Self {
         let units = &run.units;
         let size = units.sizes[run.variable];
@@ -66,19 +64,19 @@ enum Creeping {
     No,
 }
 
-impl Judge {
+impl Classifier {
     pub fn new(settings: &SweepSettings) -> Result<Self> {
         let fine = Tolerances::equal(TOLERANCE.min(settings.rtol))?;
-        Ok(Judge {
+        Ok(Classifier {
             settings: settings.clone(),
             flows: Flows::new(settings)?,
             fine: AnyIntegrator::new(Choice::Taylor, fine, MAX_STEPS)?,
         })
     }
 
-    /// What the run has settled on, or `None` if it shall go on.
+    /// The regime that the run has settled on, or `None` if it shall go on.
     pub fn classify(&mut self, run: &mut SweepRun) -> Option<Settled> {
-        let told = self.judge(run)?;
+        let told = self.verdict(run)?;
         // What is found after a leap, other than where it led to, is not what the run comes to.
         if run.leaps_back() {
             return None;
@@ -86,7 +84,7 @@ impl Judge {
         Some(told)
     }
 
-    fn judge(&mut self, run: &mut SweepRun) -> Option<Settled> {
+    fn verdict(&mut self, run: &mut SweepRun) -> Option<Settled> {
         if let Some(why) = run.hopeless.take() {
             return Some(undecided(run, why));
         }
@@ -186,7 +184,7 @@ impl Judge {
         search.point()
     }
 
-    /// What the run creeps to.
+    /// The attractor that the run converges to slowly.
     fn creeping(&mut self, run: &mut SweepRun) -> Creeping {
         let returns = run.returns();
         if returns.len() < FIRST_STAGE {
