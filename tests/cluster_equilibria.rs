@@ -407,7 +407,7 @@ fn what_several_interfaces_do_not_have_is_refused() {
     }
     refused(
         &model("--interfaces 3 --set residual_strength_2=0.0011"),
-        "the 3 interfaces are equal; only two interfaces may differ",
+        "takes 3 interfaces only if they are equal; two may differ",
     );
     refused(
         &model("--interfaces 3 --law composite.toml"),

@@ -385,7 +385,7 @@ fn equilibria_of_more_than_two_that_differ_are_refused_with_what_takes_them() {
         "equilibria --interfaces 3 --driving 10 --stiffness 0.14 --set residual_strength_3=1",
     );
     assert_eq!(ended.code, 2, "{}", ended.err);
-    let said = "--set residual_strength_3: this command takes more than two interfaces only if they are equal";
+    let said = "--set: this command takes 3 interfaces only if they are equal";
     assert!(ended.err.contains(said), "{}", ended.err);
 }
 

@@ -7,9 +7,7 @@ use super::general::{SlabSubject, by_name, ends, plane};
 use super::locus::CurveChoice;
 use super::options::{ModelOptions, Names, OutputOptions, count, number};
 use super::orbit::SECOND_METHOD;
-use super::set::assignments;
 use super::system::System;
-use super::unequal::is_of_one;
 use std::path::PathBuf;
 use twinslip::bifurcation::MAX_POINTS;
 use twinslip::error::{Error, Result};
@@ -202,9 +200,7 @@ fn many_and_equal(model: &ModelOptions) -> Result<bool> {
         && slab.clusters.is_none()
         && slab.text.system.is_none()
         && slab.law_file().is_none()
-        && !assignments(&slab.text.set)?
-            .iter()
-            .any(|(name, _)| is_of_one(name)))
+        && !slab.sets_one_interface()?)
 }
 
 impl LocusOptions {

@@ -131,6 +131,12 @@ impl SlabOptions {
         Ok(slab)
     }
 
+    /// Whether `set` gives a value to one interface alone, of however many.
+    pub(super) fn sets_one_interface(&self) -> Result<bool> {
+        let set = assignments(&self.text.set)?;
+        Ok(set.into_iter().any(|(name, _)| is_of_one(name)))
+    }
+
     /// The value of a parameter that is neither V_H nor K. Those of one interface are seen to where there is a system.
     fn put(&mut self, name: &str, value: f64) -> Result<()> {
         let is_of_one_of_many = self.count() > 2 && is_of_one(name);

@@ -165,9 +165,9 @@ impl System {
                 slab.law_told()
             )));
         }
-        if interfaces > 2 && OfOne::read(slab)?.any() {
+        if interfaces > 2 && slab.sets_one_interface()? {
             return Err(Error::Input(format!(
-                "`set`: the {interfaces} interfaces are equal; only two interfaces may differ"
+                "`set`: this command takes {interfaces} interfaces only if they are equal; two may differ, and more in `integrate` and `branch equilibria`"
             )));
         }
         Self::counted(slab, interfaces, options.driving, options.stiffness)

@@ -60,12 +60,6 @@ impl OfOne {
     pub fn read(options: &SlabOptions) -> Result<Self> {
         let mut all = OfOne::default();
         for (name, value) in assignments(&options.text.set)? {
-            if options.count() > 2 && is_of_one(name) {
-                let what = format!(
-                    "`set` {name}: this command takes more than two interfaces only if they are equal; `branch equilibria` and `integrate` take others"
-                );
-                return Err(Error::Input(what));
-            }
             let Some((place, interface)) = of_one("set", name)? else {
                 continue;
             };
@@ -90,11 +84,6 @@ impl OfOne {
             all.0[interface][place] = Some(value);
         }
         Ok(all)
-    }
-
-    /// Whether an interface has a number of its own.
-    pub fn any(&self) -> bool {
-        self.0.as_flattened().iter().any(Option::is_some)
     }
 
     /// The constants of an interface, of which `common` are those of both.
