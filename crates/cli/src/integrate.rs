@@ -174,7 +174,7 @@ pub fn integrate(
         None => Report::new(&options.output, call, &others)?,
         Some(_) => Report::over(&options.output, call, &others, Over::All)?,
     };
-    let kept = !report.streams();
+    let kept = report.repeats();
     if options.output.explain {
         let keeping = if kept {
             Keeping::Stored

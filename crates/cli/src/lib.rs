@@ -8,6 +8,9 @@ mod continuation;
 pub(crate) mod ensemble;
 mod equilibria;
 mod examples;
+#[cfg(feature = "explore")]
+mod explore;
+mod failure;
 mod fault;
 mod fit;
 mod general;
@@ -40,6 +43,7 @@ pub(crate) mod words;
 
 pub use call::Outlet;
 pub use catalogue::{OptionInfo, OptionKind, commands, options};
+pub use failure::Failure;
 pub use report::sundials;
 
 /// What the tests of this repository reach for. Nothing here is kept as it is.
@@ -93,6 +97,10 @@ enum CliCommand {
     /// Run a scene: a built-in one, such as fig12, or a file
     #[command(after_help = run::EXAMPLE)]
     Run(run::RunOptions),
+    /// Explore a system in the browser: click a diagram of two parameters and see runs, portraits, return maps and branches
+    #[cfg(feature = "explore")]
+    #[command(after_help = explore::EXAMPLE)]
+    Explore(Box<explore::ExploreOptions>),
     /// Join the files of all parts of a sweep into the file that a single run would write
     #[command(after_help = merge::EXAMPLE)]
     Merge(merge::MergeOptions),
@@ -252,6 +260,8 @@ fn run_line(command: &CliCommand, call: &Call) -> Result<Ending, Error> {
     match command {
         CliCommand::Compute(command) => compute(command, call),
         CliCommand::Run(options) => run::run(options, call),
+        #[cfg(feature = "explore")]
+        CliCommand::Explore(options) => explore::run(options, call),
         CliCommand::Merge(options) => merge::run(options),
         CliCommand::Reproduce(options) => reproduce::run(options, call),
         CliCommand::Figure(options) => reproduce::run_figure(options, call),

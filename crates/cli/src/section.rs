@@ -31,9 +31,9 @@ pub fn run(options: &SectionOptions, call: &Call) -> Result<Ending> {
     }
     let units = plan.system.units();
     let remarks = report.remarks(&plan.system, &numerics(&plan));
-    let drawn = options.plot.is_some();
+    let kept = options.plot.is_some() || report.repeats();
     let columns = views::names(&section_columns(&plan.system), false);
-    let mut out = match StreamOut::new(&report, remarks, (columns, units), drawn) {
+    let mut out = match StreamOut::new(&report, remarks, (columns, units), kept) {
         Ok(out) => out.counting(),
         Err(error) => return written(Err(error), &report.place),
     };
@@ -45,7 +45,10 @@ pub fn run(options: &SectionOptions, call: &Call) -> Result<Ending> {
     if let Some(error) = broken {
         return written(Err(error), &report.place);
     }
-    let ending = write(&plan, &report, &rows, &outcome)?;
+    // Those that were handed on need not be there twice.
+    let handed_on = RowList::default();
+    let listed = if report.repeats() { &rows } else { &handed_on };
+    let ending = write(&plan, &report, listed, &outcome)?;
     if let Some(path) = &options.plot {
         match views::picture_of_section(&plan, &rows) {
             Some(picture) => report.draw(path, &picture)?,

@@ -1,0 +1,336 @@
+//! The server of the page: who may ask, what for, and the answers.
+
+use super::answer::{self, Answer};
+use super::outbox::{Outbox, Whole, object, too_many_rows};
+use super::queue::{MOST_WAITING, Queue};
+use super::request::{COMMANDS, words};
+use super::{assets, bundle, model};
+use crate::failure::Failure;
+use crate::{Ending, call::Outlet, run_into};
+use http_body_util::{BodyExt, Limited};
+use hyper::body::Incoming;
+use hyper::server::conn::http1;
+use hyper::service::service_fn;
+use hyper::{HeaderMap, Method, Request, StatusCode, header};
+use hyper_util::rt::{TokioIo, TokioTimer};
+use serde_json::{Map, Value, json};
+use std::convert::Infallible;
+use std::future::poll_fn;
+use std::sync::Arc;
+use std::task::Poll;
+use std::time::Duration;
+use tokio::net::TcpListener;
+use tokio::sync::Semaphore;
+use tokio::time::timeout;
+use twinslip::error::Error;
+
+/// Connections at once; more wait to be accepted.
+const MOST_CONNECTIONS: usize = 64;
+/// Bytes of the options of a request.
+const LONGEST: usize = 1 << 20;
+/// Bytes of the head of a request.
+const LONGEST_HEAD: usize = 16 << 10;
+/// Fields in the head of a request.
+const MOST_HEADS: usize = 64;
+/// A head or a body that takes longer to come is not waited for.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// What answers requests.
+pub struct Server {
+    /// The secret first part of all paths.
+    pub token: String,
+    /// The port that it listens on.
+    pub port: u16,
+    /// What it was started with, for the page.
+    pub begin: Value,
+    /// Commands that run and wait.
+    pub queue: Arc<Queue>,
+}
+
+/// Answers requests for ever.
+pub async fn serve(listener: TcpListener, server: Arc<Server>) -> Infallible {
+    let places = Arc::new(Semaphore::new(MOST_CONNECTIONS));
+    loop {
+        let place = Arc::clone(&places).acquire_owned().await;
+        let Ok((stream, _)) = listener.accept().await else {
+            // Too many files are open, say: others may be closed soon.
+            tokio::time::sleep(Duration::from_millis(50)).await;
+            continue;
+        };
+        // Lines are short, and wanted at once.
+        let _ = stream.set_nodelay(true);
+        let server = Arc::clone(&server);
+        tokio::spawn(async move {
+            let service = service_fn(|request| {
+                let server = Arc::clone(&server);
+                async move { Ok::<_, Infallible>(server.answer(request).await) }
+            });
+            let connection = http1::Builder::new()
+                .timer(TokioTimer::new())
+                .header_read_timeout(PATIENCE)
+                .max_buf_size(LONGEST_HEAD)
+                .max_headers(MOST_HEADS)
+                .serve_connection(TokioIo::new(stream), service);
+            // That a client goes away is its own affair.
+            let _ = connection.await;
+            drop(place);
+        });
+    }
+}
+
+fn refused(status: StatusCode, message: impl Into<String>) -> Answer {
+    let failure = Failure {
+        kind: "input",
+        field: None,
+        words: message.into(),
+    };
+    answer::json(status, &json!({"error": object(&failure)}))
+}
+
+impl Server {
+    /// The address of the page.
+    pub fn address(&self) -> String {
+        format!("http://127.0.0.1:{}/{}/", self.port, self.token)
+    }
+
+    async fn answer(&self, request: Request<Incoming>) -> Answer {
+        if let Err(why) = self.allowed(&request) {
+            return refused(StatusCode::FORBIDDEN, why);
+        }
+        let path = request.uri().path();
+        let inner = path
+            .get(1 + self.token.len()..)
+            .unwrap_or_default()
+            .to_owned();
+        if request.uri().query().is_some() {
+            return refused(StatusCode::NOT_FOUND, "there is no such page");
+        }
+        let got = request.method() == Method::GET;
+        match (inner.as_str(), inner.strip_prefix("/api/")) {
+            ("/" | "/explore.js" | "/style.css", _) if !got => not_allowed("GET"),
+            ("/", _) => answer::whole(StatusCode::OK, "text/html; charset=utf-8", self.page()),
+            ("/style.css", _) => {
+                let style = assets::style().into_owned();
+                answer::whole(StatusCode::OK, "text/css; charset=utf-8", style)
+            }
+            ("/explore.js", _) => match bundle::bundle(&assets::modules(), assets::MAIN) {
+                Ok(script) => {
+                    answer::whole(StatusCode::OK, "text/javascript; charset=utf-8", script)
+                }
+                Err(why) => refused(StatusCode::INTERNAL_SERVER_ERROR, why),
+            },
+            (_, Some(command)) if command == "model" || COMMANDS.contains(&command) => {
+                match request.method() == Method::POST {
+                    true => self.asked(&command.to_owned(), request).await,
+                    false => not_allowed("POST"),
+                }
+            }
+            _ => refused(StatusCode::NOT_FOUND, "there is no such page"),
+        }
+    }
+
+    /// That a request comes from the page of this server, or asks for that page, and knows the secret.
+    fn allowed(&self, request: &Request<Incoming>) -> Result<(), &'static str> {
+        let heads = request.headers();
+        let hosts = ["127.0.0.1", "localhost"].map(|name| format!("{name}:{}", self.port));
+        let is_host = |host: &str| hosts.iter().any(|own| own == host);
+        // A name that leads here, of another site, is not ours.
+        if !only(heads, header::HOST).is_some_and(is_host) || request.uri().authority().is_some() {
+            return Err("this server answers at 127.0.0.1 and localhost alone");
+        }
+        let origin = heads.get_all(header::ORIGIN).iter();
+        let mut origins = origin.map(|origin| origin.to_str().ok()?.strip_prefix("http://"));
+        if !origins.all(|origin| origin.is_some_and(is_host)) {
+            return Err("other pages have no access");
+        }
+        let site = heads.get_all("sec-fetch-site").iter();
+        let mut sites = site.map(|site| site.as_bytes());
+        if !sites.all(|site| [&b"same-origin"[..], b"none"].contains(&site)) {
+            return Err("other pages have no access");
+        }
+        let path = request.uri().path().as_bytes();
+        let token = path.get(1..=self.token.len()).unwrap_or_default();
+        let ends = path
+            .get(1 + self.token.len())
+            .is_none_or(|&next| next == b'/');
+        match same(token, self.token.as_bytes()) && ends {
+            true => Ok(()),
+            false => Err("the address lacks the secret that twinslip explore has printed"),
+        }
+    }
+
+    fn page(&self) -> String {
+        // The text stands in a script, which it must not end.
+        let begin = self.begin.to_string().replace('<', "\\u003c");
+        assets::index().replacen(
+            "id=\"begin\"></script>",
+            &format!("id=\"begin\">{begin}</script>"),
+            1,
+        )
+    }
+
+    /// A command, or the description of a model.
+    async fn asked(&self, command: &str, request: Request<Incoming>) -> Answer {
+        let heads = request.headers();
+        let is = |name, wanted: &str| {
+            let value = only(heads, name).unwrap_or_default();
+            value
+                .split(';')
+                .next()
+                .is_some_and(|kind| kind.trim().eq_ignore_ascii_case(wanted))
+        };
+        if !is(header::CONTENT_TYPE, "application/json") {
+            return refused(
+                StatusCode::UNSUPPORTED_MEDIA_TYPE,
+                "options come as application/json",
+            );
+        }
+        let streams = is(header::ACCEPT, "application/x-ndjson");
+        let behind =
+            only(heads, header::HeaderName::from_static("priority")).is_some_and(is_background);
+        let options = match options(request).await {
+            Ok(options) => options,
+            Err(refused) => return refused,
+        };
+        let words = match command {
+            "model" => words("orbit", &options),
+            _ => words(command, &options),
+        };
+        let words = match words {
+            Ok(words) => words,
+            Err(error) => {
+                let failure = Failure::of(&error);
+                return answer::json(StatusCode::BAD_REQUEST, &json!({"error": object(&failure)}));
+            }
+        };
+        let outbox = Arc::new(Outbox::new(
+            streams,
+            behind.then(|| Arc::clone(&self.queue)),
+        ));
+        let added = match command {
+            "model" => self
+                .queue
+                .add(Arc::clone(&outbox), move |outbox| describe(&words, outbox)),
+            _ => self
+                .queue
+                .add(Arc::clone(&outbox), move |outbox| run(&words, outbox)),
+        };
+        if !added {
+            let why = format!("{MOST_WAITING} commands wait already; ask again when some are done");
+            return refused(StatusCode::SERVICE_UNAVAILABLE, why);
+        }
+        let lines = answer::lines(Arc::clone(&outbox));
+        if streams {
+            return lines;
+        }
+        let whole = poll_fn(|context| {
+            outbox
+                .whole(context.waker())
+                .map_or(Poll::Pending, Poll::Ready)
+        });
+        let whole = whole.await;
+        drop(lines);
+        whole_answer(whole)
+    }
+}
+
+fn not_allowed(method: &'static str) -> Answer {
+    let mut answer = refused(
+        StatusCode::METHOD_NOT_ALLOWED,
+        format!("the method is {method} here"),
+    );
+    let value = header::HeaderValue::from_static(method);
+    answer.headers_mut().insert(header::ALLOW, value);
+    answer
+}
+
+/// The value of a field that stands there once.
+fn only(heads: &HeaderMap, name: header::HeaderName) -> Option<&str> {
+    let mut all = heads.get_all(name).iter();
+    let first = all.next()?.to_str().ok();
+    first.filter(|_| all.next().is_none())
+}
+
+/// Whether `Priority` (RFC 9218) has the urgency of what nobody waits for.
+fn is_background(priority: &str) -> bool {
+    let urgency = priority
+        .split(',')
+        .find_map(|part| part.trim().strip_prefix("u="));
+    urgency
+        .and_then(|number| number.parse::<u8>().ok())
+        .is_some_and(|number| number >= 6)
+}
+
+/// Whether these are the same bytes, in a time that tells nothing of how many are.
+fn same(given: &[u8], own: &[u8]) -> bool {
+    let differences = given.iter().zip(own).fold(0, |all, (a, b)| all | (a ^ b));
+    given.len() == own.len() && std::hint::black_box(differences) == 0
+}
+
+/// The options in the body of a request.
+async fn options(request: Request<Incoming>) -> Result<Map<String, Value>, Answer> {
+    let body = Limited::new(request.into_body(), LONGEST).collect();
+    let body = match timeout(PATIENCE, body).await {
+        Ok(Ok(body)) => body.to_bytes(),
+        Ok(Err(error)) if error.is::<http_body_util::LengthLimitError>() => {
+            let why = format!("options are longer than {LONGEST} bytes");
+            return Err(refused(StatusCode::PAYLOAD_TOO_LARGE, why));
+        }
+        Ok(Err(_)) => {
+            return Err(refused(
+                StatusCode::BAD_REQUEST,
+                "the options did not come whole",
+            ));
+        }
+        Err(_) => {
+            return Err(refused(
+                StatusCode::REQUEST_TIMEOUT,
+                "the options did not come in time",
+            ));
+        }
+    };
+    let wrong = |why: String| refused(StatusCode::BAD_REQUEST, why);
+    let text = match body.is_empty() {
+        true => b"{}",
+        false => &body[..],
+    };
+    // It goes no deeper than 128 levels.
+    serde_json::from_slice(text)
+        .map_err(|error| wrong(format!("the options are no JSON object: {error}")))
+}
+
+fn run(words: &[String], outbox: &Arc<Outbox>) {
+    let ended = run_into(words, Arc::<Outbox>::clone(outbox));
+    outbox.end(ended.map_err(|error| Failure::of(&error)));
+}
+
+fn describe(words: &[String], outbox: &Arc<Outbox>) {
+    let described = model::model_description(words);
+    if let Ok(model) = &described {
+        outbox.object(model.to_string().as_bytes());
+    }
+    outbox.end(
+        described
+            .map(|_| Ending::Done)
+            .map_err(|error: Error| Failure::of(&error)),
+    );
+}
+
+/// The answer to who asked for an object alone.
+fn whole_answer(whole: Whole) -> Answer {
+    let failure = match whole.ended {
+        Ok(_) if whole.exceeded => Failure {
+            kind: "input",
+            field: None,
+            words: too_many_rows(),
+        },
+        Ok(_) => return answer::whole(StatusCode::OK, "application/json", whole.object),
+        Err(failure) => failure,
+    };
+    let status = match failure.kind {
+        "input" | "file" => StatusCode::BAD_REQUEST,
+        "numerical" => StatusCode::UNPROCESSABLE_ENTITY,
+        _ => StatusCode::INTERNAL_SERVER_ERROR,
+    };
+    answer::json(status, &json!({"error": object(&failure)}))
+}
