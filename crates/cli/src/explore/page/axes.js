@@ -8,7 +8,10 @@ const TICK = 4;
 const SMALL_TICK = 2.5;
 /** Room between the frame and the labels of ticks. */
 const AIR = 7;
-/** Least room between labels side by side, and least distance of those one below the other, in sizes of letters. */
+/**
+ * Least room between labels side by side, and least distance of those one below the other, in sizes of
+ * letters.
+ */
 const BESIDE = 9;
 const BELOW = 1.35;
 /** Breadths of the frame, of grid lines and of the line at zero. */
@@ -20,18 +23,22 @@ const LINE = 1.35;
 
 /** Returns the ticks of a horizontal axis of that width. */
 export function horizontalTicks(scale, width, size) {
-  return ticksOf(scale, width, (ticks) => ticks.every((tick, i) => {
-    if (i === 0) return true;
-    const apart = ((tick.at - ticks[i - 1].at) / (scale.hi - scale.lo)) * width;
-    return apart >= 0.5 * (wordsWidth(tick.label, size) + wordsWidth(ticks[i - 1].label, size)) + BESIDE;
-  }));
+  return ticksOf(scale, width, (ticks) =>
+    ticks.every((tick, i) => {
+      if (i === 0) return true;
+      const apart = ((tick.at - ticks[i - 1].at) / (scale.hi - scale.lo)) * width;
+      return apart >= 0.5 * (wordsWidth(tick.label, size) + wordsWidth(ticks[i - 1].label, size)) + BESIDE;
+    }),
+  );
 }
 
 /** Returns those of a vertical one of that height. */
 export function verticalTicks(scale, height, size) {
-  return ticksOf(scale, height, (ticks) => ticks.every((tick, i) => (
-    i === 0 || ((tick.at - ticks[i - 1].at) / (scale.hi - scale.lo)) * height >= BELOW * size
-  )));
+  return ticksOf(scale, height, (ticks) =>
+    ticks.every(
+      (tick, i) => i === 0 || ((tick.at - ticks[i - 1].at) / (scale.hi - scale.lo)) * height >= BELOW * size,
+    ),
+  );
 }
 
 /** Returns the width of the widest label. */
@@ -46,7 +53,7 @@ export function roomBelow(lines, size) {
 
 /** Returns the room that they need beside it. */
 export function roomBeside(lines, widest, size) {
-  return 4 + LINE * size * lines + (lines > 0 ? 4 : 0) + widest + AIR;
+  return 4 + LINE * size * lines + (lines > 0 ? 5 : 0) + widest + AIR;
 }
 
 /** A frame with its scales; pixels are those of the surface. */
@@ -108,7 +115,10 @@ export class PanelFrame {
     }
     const { y } = this.scales;
     if (zeroLine && !y.log && y.lo <= 0 && y.hi >= 0) {
-      surface.line([this.x, this.upward(0), this.right, this.upward(0)], { colour: palette.ink, width: ZERO_LINE });
+      surface.line([this.x, this.upward(0), this.right, this.upward(0)], {
+        colour: palette.ink,
+        width: ZERO_LINE,
+      });
     }
   }
 
@@ -118,39 +128,47 @@ export class PanelFrame {
     const look = { colour: palette.ink, width: BORDER };
     surface.line([x, y, right, y, right, bottom, x, bottom, x, y], look);
     const [below, beside] = [[], []];
-    for (const [list, length] of [[ticks.x.named.map(({ at }) => at), TICK], [ticks.x.small, SMALL_TICK]]) {
+    for (const [list, length] of [
+      [ticks.x.named.map(({ at }) => at), TICK],
+      [ticks.x.small, SMALL_TICK],
+    ]) {
       for (const at of list) below.push(this.across(at), bottom, this.across(at), bottom + length, NaN, NaN);
     }
-    for (const [list, length] of [[ticks.y.named.map(({ at }) => at), TICK], [ticks.y.small, SMALL_TICK]]) {
+    for (const [list, length] of [
+      [ticks.y.named.map(({ at }) => at), TICK],
+      [ticks.y.small, SMALL_TICK],
+    ]) {
       for (const at of list) beside.push(x - length, this.upward(at), x, this.upward(at), NaN, NaN);
     }
     surface.line(below, look);
     surface.line(beside, look);
     const words = { colour: palette.ink, size };
     for (const tick of ticks.x.named) {
-      surface.words(tick.label, this.across(tick.at), bottom + AIR + 0.5 * size, { ...words, align: "middle" });
+      surface.words(tick.label, this.across(tick.at), bottom + AIR + 0.5 * size, {
+        ...words,
+        align: "middle",
+      });
     }
     for (const tick of ticks.y.named) {
       surface.words(tick.label, x - AIR, this.upward(tick.at), { ...words, align: "right" });
     }
   }
 
-  /** Draws the names of the axes, in lines: the horizontal one below, the vertical one with its first line at `left`. */
-  drawNames(surface, palette, names, left) {
+  /**
+   * Draws the names of the axes in lines: one below, the other from `left` on and between the heights of
+   * `span`.
+   */
+  drawNames(surface, palette, names, left, span) {
     const { size } = this;
     const look = { colour: palette.ink, size, align: "middle" };
+    const within = (at, half, low, high) => Math.max(low + half, Math.min(at, high - half));
     names.x.forEach((line, i) => {
       const y = this.bottom + AIR + size + 2 + LINE * size * (i + 0.5);
-      // A long name stays on the surface.
-      const half = 0.5 * wordsWidth(line, size);
-      const middle = this.x + 0.5 * this.width;
-      const x = Math.max(half + 2, Math.min(middle, surface.width - half - 2));
+      const x = within(this.x + 0.5 * this.width, 0.5 * wordsWidth(line, size), 2, surface.width - 2);
       surface.words(line, x, y, look);
     });
     names.y.forEach((line, i) => {
-      const half = 0.5 * wordsWidth(line, size);
-      const middle = this.y + 0.5 * this.height;
-      const y = Math.max(half + 2, Math.min(middle, surface.height - half - 2));
+      const y = within(this.y + 0.5 * this.height, 0.5 * wordsWidth(line, size), ...span);
       surface.words(line, left + LINE * size * (i + 0.5), y, { ...look, upwards: true });
     });
   }

@@ -2,19 +2,27 @@
 
 import { coordinateOf } from "./ticks.js";
 
-/** Breadth of stripes across, at least and at most; between them a part of the breadth of a cell, so that each shows all. */
+/**
+ * Breadth of stripes across, at least and at most; between them a part of the breadth of a cell, so that each
+ * shows all.
+ */
 const NARROW = 1.8;
 const BROAD = 5;
 const OF_CELL = 0.2;
 
-/** Edges as places within the frame; a logarithmic axis has zero infinitely far off, so its cell reaches the frame. */
+/**
+ * Edges as places within the frame; a logarithmic axis has zero infinitely far off, so its cell reaches the
+ * frame.
+ */
 function edgePlaces(edges, scale, place, low, high) {
-  return edges.map((edge) => Math.min(high, Math.max(low, place(coordinateOf(scale, Math.max(edge, scale.log ? 0 : edge))))));
+  return edges.map((edge) =>
+    Math.min(high, Math.max(low, place(coordinateOf(scale, Math.max(edge, scale.log ? 0 : edge))))),
+  );
 }
 
 /**
- * Draws the cells of a map in the frame: grounds with one rectangle for a run of equal cells, and stripes for further
- * colours of a cell.
+ * Draws the cells of a map in the frame: grounds with one rectangle for a run of equal cells, and stripes for
+ * further colours of a cell.
  */
 export function drawCells(surface, map, frame, palette) {
   const columns = map.x_edges.length - 1;
@@ -37,7 +45,8 @@ export function drawCells(surface, map, frame, palette) {
       i = end - 1;
       if (!(place.width > 0)) continue;
       under(grounds, fill[0]).push(place.x, place.y, place.width, place.height);
-      for (let k = 1; k < fill.length; k++) addStripes(under(stripes, fill[k]), place, breadth, k, fill.length);
+      for (let k = 1; k < fill.length; k++)
+        addStripes(under(stripes, fill[k]), place, breadth, k, fill.length);
     }
   }
   for (const [colour, list] of grounds) surface.rectangles(list, palette.fill(colour));
@@ -48,7 +57,10 @@ function sameFill(a, b) {
   return a?.length === b.length && a.every((colour, i) => colour === b[i]);
 }
 
-/** Adds the corners of the stripe of that number of so many, again and again across a rectangle, in line with others. */
+/**
+ * Adds the corners of the stripe of that number of so many, again and again across a rectangle, in line with
+ * others.
+ */
 function addStripes(corners, { x, y, width, height }, breadth, number, many) {
   const period = breadth * many;
   const [first, last] = [x + y, x + width + y + height];
@@ -60,7 +72,10 @@ function addStripes(corners, { x, y, width, height }, breadth, number, many) {
     const at = (sum) => {
       const over = Math.min(x + width, sum - y);
       const under = Math.max(x, sum - y - height);
-      return [[over, sum - over], [under, sum - under]];
+      return [
+        [over, sum - over],
+        [under, sum - under],
+      ];
     };
     const [[a0, a1], [b0, b1]] = [at(a), at(b)];
     // Between two of its diagonals a rectangle may have corners of its own.

@@ -1,4 +1,6 @@
-/** Curves, dots and areas of a panel in its frame: thinned to what the pixels can show, and cut at the frame. */
+/**
+ * Curves, dots and areas of a panel in its frame: thinned to what the pixels can show, and cut at the frame.
+ */
 
 import { dashesOf } from "./symbols.js";
 
@@ -19,8 +21,8 @@ const AGAIN = 28;
 const coordinates = new WeakMap();
 
 /**
- * Returns the coordinates of a series as typed arrays, which are kept: `y` is NaN where the curve breaks, `x` grows if
- * `sorted`, and repeats the last one there.
+ * Returns the coordinates of a series as typed arrays, which are kept: `y` is NaN where the curve breaks, `x`
+ * grows if `sorted`, and repeats the last one there.
  *
  * @param {{x: number[], y: number[]}} series
  * @param {{x: {log: boolean}, y: {log: boolean}}} scales
@@ -105,7 +107,12 @@ class CutLine {
   cut(x0, y0, x1, y1) {
     const [dx, dy] = [x1 - x0, y1 - y0];
     let [from, to] = [0, 1];
-    const sides = [[-dx, x0 - this.left], [dx, this.right - x0], [-dy, y0 - this.top], [dy, this.bottom - y0]];
+    const sides = [
+      [-dx, x0 - this.left],
+      [dx, this.right - x0],
+      [-dy, y0 - this.top],
+      [dy, this.bottom - y0],
+    ];
     for (const [rate, room] of sides) {
       if (rate === 0) {
         if (room < 0) from = 2;
@@ -123,8 +130,8 @@ class CutLine {
 }
 
 /**
- * Returns the line of a series on the surface, cut at the frame: where many points share a column of pixels, the first,
- * the least, the largest and the last of each run.
+ * Returns the line of a series on the surface, cut at the frame: where many points share a column of pixels,
+ * the first, the least, the largest and the last of each run.
  *
  * @returns {number[]} places x, y, with NaN between pieces
  */
@@ -198,7 +205,10 @@ function dotPlaces(series, frame, radius) {
   return xy;
 }
 
-/** The stretches of a line that do not follow an earlier one: cycles drawn one over the other would fill the gaps of dashes. */
+/**
+ * The stretches of a line that do not follow an earlier one: cycles drawn one over the other would fill the
+ * gaps of dashes.
+ */
 function firstTimes(xy, frame) {
   const across = Math.ceil((frame.width + 2 * BEYOND) / NEAR) + 4;
   const down = Math.ceil((frame.height + 2 * BEYOND) / NEAR) + 4;
@@ -266,7 +276,9 @@ export function drawnWidth(series, panel, frame) {
   const small = panel.frame ? Math.min(1, Math.max(0.65, Math.sqrt(frame.width / panel.frame[0]))) : 1;
   const width = series.width * small;
   if (series.dots || width >= 1.2) return width;
-  const whole = panel.x.log ? Math.log10(panel.x.range[1] / panel.x.range[0]) : panel.x.range[1] - panel.x.range[0];
+  const whole = panel.x.log
+    ? Math.log10(panel.x.range[1] / panel.x.range[0])
+    : panel.x.range[1] - panel.x.range[0];
   const part = Math.abs((frame.scales.x.hi - frame.scales.x.lo) / whole);
   return Math.min(1.3, width / Math.sqrt(Math.min(1, part)));
 }
@@ -282,7 +294,8 @@ export function drawAreas(surface, panel, frame, palette) {
         const { x, y } = frame.place(piece.x[i], piece.y[i]);
         if (x === x && y === y) corners.push(far(x, frame.x, frame.right), far(y, frame.y, frame.bottom));
       }
-      if (corners.length > 4) surface.area(corners, { colour: palette.line(area.colour), opacity: area.opacity });
+      if (corners.length > 4)
+        surface.area(corners, { colour: palette.line(area.colour), opacity: area.opacity });
     }
   }
 }

@@ -1,4 +1,7 @@
-/** Draws pictures from their descriptions: what the command line draws, at any size, in light and dark, and zoomed. */
+/**
+ * Draws pictures from their descriptions: what the command line draws, at any size, in light and dark, and
+ * zoomed.
+ */
 
 import { drawCells } from "./cells.js";
 import { drawAreas, drawCurves } from "./curves.js";
@@ -16,10 +19,10 @@ import { paletteOf } from "./palette.js";
  * @param {number} view.width in CSS pixels
  * @param {number} view.height
  * @param {{ink?: string, grid?: string, background?: string}} [view.theme] CSS colours
- * @param {{x?: [number, number], y?: [number, number]} | object[]} [view.ranges] in place of those of the panel; for a
- *   picture a list of them, in the order of its panels
- * @param {{panel?: number, series?: number, index?: number, mark?: number, x?: number, y?: number}} [view.highlight] a
- *   series, one of its points, a mark or a pair of values that stands out
+ * @param {{x?: [number, number], y?: [number, number]} | object[]} [view.ranges] in place of those of the
+ *   panel; for a picture a list of them, in the order of its panels
+ * @param {{panel?: number, series?: number, index?: number, mark?: number, x?: number, y?: number}}
+ *   [view.highlight] a series, one of its points, a mark or a pair of values that stands out
  * @param {number} [view.size] of letters, in place of one that suits the width
  * @param {boolean} [view.transparent] without the ground
  * @returns {Hits}
@@ -31,15 +34,20 @@ export function draw(surface, description, view) {
   for (const { text, x, y, size } of titles) surface.words(text, x, y, { colour: palette.ink, size });
   panels.forEach((placed, number) => {
     const { highlight } = view;
-    drawPanel(surface, placed, palette, highlight && (highlight.panel ?? 0) === number ? highlight : undefined);
+    drawPanel(
+      surface,
+      placed,
+      palette,
+      highlight && (highlight.panel ?? 0) === number ? highlight : undefined,
+    );
   });
   return new Hits(panels);
 }
 
 /** One panel, from what lies behind to what lies before. */
-function drawPanel(surface, { panel, frame, heading, names, left, aside }, palette, highlight) {
+function drawPanel(surface, { panel, frame, heading, names, span, left, aside }, palette, highlight) {
   heading.draw(surface, palette, frame.x - aside, frame.y);
-  frame.drawNames(surface, palette, names, left);
+  frame.drawNames(surface, palette, names, left, span);
   if (!panel.cells) frame.drawGrid(surface, palette, panel.zero_line);
   surface.clipped(frame.x, frame.y, frame.width, frame.height, () => {
     if (panel.cells) drawCells(surface, panel.cells, frame, palette);

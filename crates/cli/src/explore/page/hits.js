@@ -14,11 +14,13 @@ export class Hits {
     this.frames = panels.map(({ frame: { x, y, width, height } }) => ({ x, y, width, height }));
   }
 
-  /** Returns the number of the panel whose frame holds a place, or that of the nearest one; -1 without panels. */
+  /**
+   * Returns the number of the panel whose frame holds a place, or that of the nearest one; -1 without panels.
+   */
   panelAt(px, py) {
-    const away = this.frames.map(({ x, y, width, height }) => (
-      Math.hypot(Math.max(x - px, 0, px - x - width), Math.max(y - py, 0, py - y - height))
-    ));
+    const away = this.frames.map(({ x, y, width, height }) =>
+      Math.hypot(Math.max(x - px, 0, px - x - width), Math.max(y - py, 0, py - y - height)),
+    );
     return away.indexOf(Math.min(...away));
   }
 
@@ -30,8 +32,8 @@ export class Hits {
   }
 
   /**
-   * Returns the values at a place, on the axes of the panel there or of the one given; `inside` says whether its frame
-   * holds the place.
+   * Returns the values at a place, on the axes of the panel there or of the one given; `inside` says whether
+   * its frame holds the place.
    *
    * @returns {{x: number, y: number, panel: number, inside: boolean} | null}
    */
@@ -50,19 +52,24 @@ export class Hits {
   }
 
   /**
-   * Returns the mark or the point of a series that is nearest to a place: of lines the nearer end of the nearest
-   * stretch. A mark close by goes before curves.
+   * Returns the mark or the point of a series that is nearest to a place: of lines the nearer end of the
+   * nearest stretch. A mark close by goes before curves.
    *
    * @param {number} px
    * @param {number} py
    * @param {number} [within] so many pixels
-   * @param {{panel?: number, series?: (number: number) => boolean, marks?: boolean}} [of] only in this panel, only of
-   *   these series, without marks
+   * @param {{panel?: number, series?: (number: number) => boolean, marks?: boolean}} [of] only in this panel,
+   *   only of these series, without marks
    * @returns {{panel: number, series: number | null, mark: number | null, index: number, label: string,
-   *   distance: number, x: number, y: number, px: number, py: number} | null} `series` and `index`, or `mark`, are
-   *   numbers in the description
+   *   distance: number, x: number, y: number, px: number, py: number} | null} `series` and `index`, or
+   *   `mark`, are numbers in the description
    */
-  nearest(px, py, within = Infinity, { panel = this.panelAt(px, py), series = () => true, marks = true } = {}) {
+  nearest(
+    px,
+    py,
+    within = Infinity,
+    { panel = this.panelAt(px, py), series = () => true, marks = true } = {},
+  ) {
     const found = this.panels[panel];
     if (!found || !found.frame.holds(px, py, within)) return null;
     const mark = marks ? this.nearestMark(px, py, Math.min(within, MARK_REACH), panel) : null;

@@ -1,13 +1,33 @@
-/** Where names of points and notes stand: where they cover neither each other nor the curves, as near as that allows. */
+/**
+ * Where names of points and notes stand: where they cover neither each other nor the curves, as near as that
+ * allows.
+ */
 
 /** Gaps between a point and its name that are tried. */
 const GAPS = [6, 16, 28, 42, 60, 82];
 /** Directions that are tried, the most usual first. */
 const DIRECTIONS = [
-  [0, -1], [0, 1], [0.7, -0.7], [-0.7, -0.7], [0.7, 0.7], [-0.7, 0.7], [1, 0], [-1, 0],
-  [0.4, -0.9], [-0.4, -0.9], [0.4, 0.9], [-0.4, 0.9], [0.9, -0.4], [-0.9, -0.4], [0.9, 0.4], [-0.9, 0.4],
+  [0, -1],
+  [0, 1],
+  [0.7, -0.7],
+  [-0.7, -0.7],
+  [0.7, 0.7],
+  [-0.7, 0.7],
+  [1, 0],
+  [-1, 0],
+  [0.4, -0.9],
+  [-0.4, -0.9],
+  [0.4, 0.9],
+  [-0.4, 0.9],
+  [0.9, -0.4],
+  [-0.9, -0.4],
+  [0.9, 0.4],
+  [-0.9, 0.4],
 ];
-/** Prices of covering another name, leaving the frame, covering a point, a tie across something, and a stretch of curve. */
+/**
+ * Prices of covering another name, leaving the frame, covering a point, a tie across something, and a stretch
+ * of curve.
+ */
 const NAME = 1000;
 const FRAME = 1000;
 const POINT = 200;
@@ -55,7 +75,7 @@ export class CoveredPlaces {
     const { across, down, frame } = this;
     this.sums ??= this.summed();
     const within = (at, most) => Math.min(most, Math.max(0, at));
-    const [i0, i1] = [x - halfX, x + halfX].map((at) => within(Math.floor((at - frame.x) / SQUARE) , across));
+    const [i0, i1] = [x - halfX, x + halfX].map((at) => within(Math.floor((at - frame.x) / SQUARE), across));
     const [j0, j1] = [y - halfY, y + halfY].map((at) => within(Math.floor((at - frame.y) / SQUARE), down));
     const [right, bottom] = [Math.min(across, i1 + 1), Math.min(down, j1 + 1)];
     const sum = (i, j) => this.sums[i + (across + 1) * j];
@@ -87,14 +107,17 @@ function meet(a, b) {
 
 /** How much of a rectangle lies outside of the frame. */
 function leaves(box, frame) {
-  return box.x - box.halfX < frame.x || box.x + box.halfX > frame.right
-    || box.y - box.halfY < frame.y || box.y + box.halfY > frame.bottom;
+  return (
+    box.x - box.halfX < frame.x ||
+    box.x + box.halfX > frame.right ||
+    box.y - box.halfY < frame.y ||
+    box.y + box.halfY > frame.bottom
+  );
 }
 
 function movedInside(box, frame) {
-  const inside = (at, half, low, high) => (
-    high - low < 2 * half ? 0.5 * (low + high) : Math.min(high - half, Math.max(low + half, at))
-  );
+  const inside = (at, half, low, high) =>
+    high - low < 2 * half ? 0.5 * (low + high) : Math.min(high - half, Math.max(low + half, at));
   return {
     ...box,
     x: inside(box.x, box.halfX, frame.x, frame.right),
@@ -106,7 +129,12 @@ function movedInside(box, frame) {
 function crossesBox([ax, ay, bx, by], { x, y, halfX, halfY }) {
   const [dx, dy] = [bx - ax, by - ay];
   let [from, to] = [0, 1];
-  for (const [rate, room] of [[-dx, ax - x + halfX], [dx, x + halfX - ax], [-dy, ay - y + halfY], [dy, y + halfY - ay]]) {
+  for (const [rate, room] of [
+    [-dx, ax - x + halfX],
+    [dx, x + halfX - ax],
+    [-dy, ay - y + halfY],
+    [dy, y + halfY - ay],
+  ]) {
     if (rate === 0) {
       if (room < 0) return false;
     } else if (rate < 0) from = Math.max(from, room / rate);
@@ -117,15 +145,22 @@ function crossesBox([ax, ay, bx, by], { x, y, halfX, halfY }) {
 
 function linesCross([ax, ay, bx, by], [cx, cy, dx, dy]) {
   const side = (x0, y0, x1, y1, x, y) => (x1 - x0) * (y - y0) - (y1 - y0) * (x - x0);
-  return side(ax, ay, bx, by, cx, cy) * side(ax, ay, bx, by, dx, dy) < 0
-    && side(cx, cy, dx, dy, ax, ay) * side(cx, cy, dx, dy, bx, by) < 0;
+  return (
+    side(ax, ay, bx, by, cx, cy) * side(ax, ay, bx, by, dx, dy) < 0 &&
+    side(cx, cy, dx, dy, ax, ay) * side(cx, cy, dx, dy, bx, by) < 0
+  );
 }
 
 function nameCandidates({ x, y, halfX, halfY, preferred }) {
   const candidates = preferred ? [{ x: x + preferred[0], y: y + preferred[1], halfX, halfY }] : [];
   for (const gap of GAPS) {
     for (const [dx, dy] of DIRECTIONS) {
-      candidates.push({ x: x + dx * gap + Math.sign(dx) * halfX, y: y + dy * gap + Math.sign(dy) * halfY, halfX, halfY });
+      candidates.push({
+        x: x + dx * gap + Math.sign(dx) * halfX,
+        y: y + dy * gap + Math.sign(dy) * halfY,
+        halfX,
+        halfY,
+      });
     }
   }
   return candidates;
@@ -134,8 +169,8 @@ function nameCandidates({ x, y, halfX, halfY, preferred }) {
 /**
  * Places the names of points.
  *
- * @param {{x: number, y: number, halfX: number, halfY: number, preferred?: [number, number]}[]} names points with half the
- *   size of their names, 0 for none, and the offset at which one stands if it can
+ * @param {{x: number, y: number, halfX: number, halfY: number, preferred?: [number, number]}[]} names points
+ *   with half the size of their names, 0 for none, and the offset at which one stands if it can
  * @param {CoveredPlaces} curves
  * @param {{x: number, y: number, halfX: number, halfY: number}[]} words other words in the frame
  * @param {PanelFrame} frame
@@ -158,7 +193,8 @@ export function placeNames(names, curves, words, frame) {
       if (leaves(place, frame)) price += FRAME;
       price += CURVE * curves.count(place);
       for (const other of others) price += meet(place, other) ? POINT : 0;
-      for (const other of taken) price += (meet(place, other) ? NAME : 0) + (crossesBox(tie, other) ? TIE : 0);
+      for (const other of taken)
+        price += (meet(place, other) ? NAME : 0) + (crossesBox(tie, other) ? TIE : 0);
       for (const other of apart) price += crossesBox(tie, other) ? TIE : 0;
       for (const other of ties) price += crossesBox(other, place) || linesCross(other, tie) ? TIE : 0;
       if (price < least) [best, least] = [place, price];

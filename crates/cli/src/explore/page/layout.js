@@ -3,7 +3,7 @@
 import { horizontalTicks, PanelFrame, roomBelow, roomBeside, verticalTicks, widestLabel } from "./axes.js";
 import { headingOf } from "./legend.js";
 import { scaleOf } from "./ticks.js";
-import { wordsWidth, wrapWords } from "./words.js";
+import { cutWords, wordsWidth, wrapWords } from "./words.js";
 
 /** Columns narrower than this go below each other. */
 const NARROWEST = 300;
@@ -20,19 +20,21 @@ const ABOVE = 10;
 const RIGHT = 10;
 /** Room below a panel, and between it and the edge. */
 const BOTTOM = 4;
-/** A frame lower than this, or than this part of its share, gives up the legend; then names of axes; then the title. */
-const LOWEST = 84;
+/** Frames that take less than this part of the height give up the legend. */
 const LOW_SHARE = 0.36;
-/** Frames of a picture that is as high as it likes to be are about as wide as this times their height, or more. */
+/**
+ * Frames of a picture that is as high as it likes to be are about as wide as this times their height, or
+ * more.
+ */
 const NATURAL_LOWEST = 110;
 const NATURAL_HIGHEST = 420;
 
-/** What is left out as frames become too low. */
+/** What is left out where frames would become lower than `lowest`: the legend, names of axes, the title. */
 const LEVELS = [
-  { lines: Infinity, names: true },
-  { lines: 1, names: true },
-  { lines: 1, names: false },
-  { lines: 0, names: false },
+  { lines: Infinity, names: true, lowest: 84, share: LOW_SHARE },
+  { lines: 1, names: true, lowest: 44, share: 0 },
+  { lines: 1, names: false, lowest: 32, share: 0 },
+  { lines: 0, names: false, lowest: 0, share: 0 },
 ];
 
 /** The blocks of a description, be it a picture or one of its panels. */
@@ -62,13 +64,17 @@ function draftColumn(panels, left, width, size, level, rangesOf, natural) {
   let [inset, right] = [26, RIGHT];
   for (const draft of drafts) {
     const high = Math.max(60, natural ?? 200);
-    draft.yName = names && draft.named.y ? wrapWords(draft.panel.y.label, size, high + 2.2 * size) : [];
+    draft.yName =
+      names && draft.named.y ? wrapWords(draft.panel.y.label, size, high + 2.2 * size).slice(0, 2) : [];
     const ticks = draft.named.y ? verticalTicks(draft.scales.y, high, size) : { named: [] };
     inset = Math.max(inset, roomBeside(draft.yName.length, widestLabel(ticks, size), size));
-    const across = draft.named.x ? horizontalTicks(draft.scales.x, Math.max(40, width - inset - right), size).named : [];
+    const across = draft.named.x
+      ? horizontalTicks(draft.scales.x, Math.max(40, width - inset - right), size).named
+      : [];
     const last = across.at(-1);
     if (last) {
-      const beyond = (draft.scales.x.hi - last.at) / (draft.scales.x.hi - draft.scales.x.lo) * (width - inset - right);
+      const beyond =
+        ((draft.scales.x.hi - last.at) / (draft.scales.x.hi - draft.scales.x.lo)) * (width - inset - right);
       right = Math.max(right, 0.5 * wordsWidth(last.label, size) - beyond + 4);
     }
   }
@@ -77,7 +83,8 @@ function draftColumn(panels, left, width, size, level, rangesOf, natural) {
     const { panel } = draft;
     draft.aside = width < 420 ? inset - 6 : 0;
     draft.heading = headingOf(panel, frameWidth + right - 4 + draft.aside, size, level.lines);
-    draft.strip = draft.heading.height;
+    // Numbers at the top of the axis reach up to a heading above them.
+    draft.strip = draft.heading.height + (draft.aside ? 3 : 0);
     draft.xName = names && draft.named.x ? wrapWords(panel.x.label, size, width - 8) : [];
     draft.below = (draft.named.x ? roomBelow(draft.xName.length, size) : 6) + BOTTOM;
     const shape = panel.frame ? panel.frame[1] / panel.frame[0] : 0.6;
@@ -86,7 +93,10 @@ function draftColumn(panels, left, width, size, level, rangesOf, natural) {
   return { drafts, left, x: left + inset, frameWidth };
 }
 
-/** Headings at the top of a row are equally high, and so are those of panels side by side: frames begin in one line. */
+/**
+ * Headings at the top of a row are equally high, and so are those of panels side by side: frames begin in one
+ * line.
+ */
 function alignColumns(columns) {
   const strips = columns.map(({ drafts }) => drafts.map(({ strip }) => strip));
   for (const { drafts } of columns) {
@@ -97,6 +107,11 @@ function alignColumns(columns) {
       }
     }
   }
+}
+
+/** The height of all but the frames of a column. */
+function furnitureOf({ drafts }) {
+  return drafts.reduce((sum, { strip, below }) => sum + strip + below, 0);
 }
 
 /** Groups of columns side by side, with titles of blocks, at one level of completeness. */
@@ -111,17 +126,25 @@ function draftRows(description, view, level) {
       const group = columns.slice(first, first + beside);
       const columnWidth = width / group.length;
       const size = letterSize(view, columnWidth);
-      const drafts = group.map((panels, i) => (
-        draftColumn(panels, i * columnWidth, columnWidth, size, level, rangesOf, description.blocks ? 160 : view.height)
-      ));
+      const drafts = group.map((panels, i) =>
+        draftColumn(
+          panels,
+          i * columnWidth,
+          columnWidth,
+          size,
+          level,
+          rangesOf,
+          description.blocks ? 160 : view.height,
+        ),
+      );
       alignColumns(drafts);
       const titleSize = BLOCK_TITLE * size;
       const title = first === 0 && block.title ? wrapWords(block.title, titleSize, width - 16) : [];
       const titleHeight = title.length ? ABOVE + 1.4 * titleSize * title.length : 0;
-      const furniture = titleHeight + Math.max(...drafts.map((column) => (
-        column.drafts.reduce((sum, { strip, below }) => sum + strip + below, 0)
-      )));
-      const natural = Math.max(...drafts.map((column) => column.drafts.reduce((sum, one) => sum + one.natural, 0)));
+      const furniture = titleHeight + Math.max(...drafts.map(furnitureOf));
+      const natural = Math.max(
+        ...drafts.map((column) => column.drafts.reduce((sum, one) => sum + one.natural, 0)),
+      );
       const panels = Math.max(...drafts.map((column) => column.drafts.length));
       rows.push({ columns: drafts, title, titleSize, titleHeight, furniture, natural, panels, size });
     }
@@ -156,8 +179,9 @@ export function pictureHeight(description, width, view = {}) {
  *
  * @param {object} description
  * @param {object} view
- * @returns {{titles: object[], panels: {panel: object, frame: PanelFrame, heading: object, names: object, left: number,
- *   aside: number}[]}}
+ * @returns {{titles: object[], panels: {panel: object, frame: PanelFrame, heading: object, names: object,
+ *   span: [number, number], left: number, aside: number}[]}} where names of vertical axes begin and between
+ *   which heights they stay, and how far to the left of the frame the heading begins
  */
 export function layoutOf(description, view) {
   let rows;
@@ -167,7 +191,8 @@ export function layoutOf(description, view) {
     const [furniture, panels] = [sumOf(rows, "furniture"), sumOf(rows, "panels")];
     const free = view.height - furniture;
     factor = Math.max(free, 16 * panels) / sumOf(rows, "natural");
-    if (free / panels >= Math.min(LOWEST, 0.5 * view.height) && free >= LOW_SHARE * view.height) break;
+    if (free / panels >= Math.min(level.lowest, 0.5 * view.height) && free >= level.share * view.height)
+      break;
   }
   const [titles, panels] = [[], []];
   let top = 0;
@@ -176,14 +201,14 @@ export function layoutOf(description, view) {
       titles.push({ text, x: 8, y: top + ABOVE + 1.4 * row.titleSize * (i + 0.5), size: row.titleSize });
     });
     top += row.titleHeight;
+    const room = row.furniture - row.titleHeight + row.natural * factor;
     for (const column of row.columns) {
-      let at = top;
       // A panel alone fills its surface; in a picture no frame is higher than wide.
       const most = description.blocks ? column.frameWidth : Infinity;
       const natural = column.drafts.reduce((sum, one) => sum + one.natural, 0);
-      const furniture = column.drafts.reduce((sum, { strip, below }) => sum + strip + below, 0);
-      const room = row.titleHeight + row.natural * factor + row.furniture - row.titleHeight;
-      const stretch = column.drafts.length > 1 ? (room - row.titleHeight - furniture) / natural : factor;
+      // Of several panels the last ends where that of the highest column does.
+      const stretch = column.drafts.length > 1 ? (room - furnitureOf(column)) / natural : factor;
+      let at = top;
       for (const draft of column.drafts) {
         const height = Math.min(most, draft.natural * Math.max(stretch, factor));
         at += draft.strip;
@@ -191,7 +216,7 @@ export function layoutOf(description, view) {
         at += height + draft.below;
       }
     }
-    top += row.furniture - row.titleHeight + row.natural * factor;
+    top += room;
   }
   return { titles, panels };
 }
@@ -205,8 +230,18 @@ function placedPanel(draft, column, top, height, size) {
     y: named.y ? verticalTicks(scales.y, box.height, size) : nothing,
   };
   const frame = new PanelFrame(box, scales, ticks, size);
-  const beside = roomBeside(yName.length, widestLabel(ticks.y, size), size);
-  // The name stands close to the labels, in a column with wider ones too.
-  const left = column.x - beside + 4;
-  return { panel, frame, heading, names: { x: xName, y: yName }, left, aside };
+  // Beside a heading that begins at the frame there is room for a long name.
+  const span = [top - (aside ? 0 : draft.strip - 4), top + height + draft.below - 4];
+  const names = { x: xName, y: fittedName(panel.y.label, yName, size, span[1] - span[0]) };
+  return { panel, frame, heading, names, span, left: column.left + 4, aside };
+}
+
+/** A name in its lines, without its unit or cut if these are longer than there is room for. */
+function fittedName(name, lines, size, room) {
+  if (lines.every((line) => wordsWidth(line, size) <= room)) return lines;
+  const again = wrapWords(name, size, room);
+  if (again.length <= lines.length) return again;
+  const bare = name.replace(/\s*\[[^\]]*\]\s*$/, "");
+  const shorter = wrapWords(bare, size, room);
+  return shorter.length <= lines.length ? shorter : [cutWords(bare, size, room)];
 }

@@ -20,7 +20,9 @@ const OUTLINE = 0.6;
 /** Lines and points of the legend are not finer than this. */
 const FINEST = 1.6;
 
-/** What the legend explains: the sample before the words, these, and their colour; null for that of the axes. */
+/**
+ * What the legend explains: the sample before the words, these, and their colour; null for that of the axes.
+ */
 function legendEntries(panel) {
   const entries = [];
   for (const swatch of panel.cells?.swatches ?? []) {
@@ -42,21 +44,30 @@ function legendEntries(panel) {
   }
   for (const [text, sample] of areas) entries.push({ sample, text, colour: null });
   for (const { stroke, label } of panel.strokes) {
-    entries.push({ sample: { kind: "line", width: FINEST, stroke, colour: null }, text: label, colour: null });
+    entries.push({
+      sample: { kind: "line", width: FINEST, stroke, colour: null },
+      text: label,
+      colour: null,
+    });
   }
-  for (const key of panel.keys) entries.push({ sample: { kind: "symbol", ...key }, text: key.label, colour: null });
+  for (const key of panel.keys)
+    entries.push({ sample: { kind: "symbol", ...key }, text: key.label, colour: null });
   return entries.filter((entry) => entry.text);
 }
 
 /** The room before the words. */
 function sampleWidth(sample) {
   switch (sample.kind) {
-    case "line": return SAMPLE + GAP;
+    case "line":
+      return SAMPLE + GAP;
     case "dots":
-    case "symbol": return 2 * SYMBOL_HALF + GAP;
+    case "symbol":
+      return 2 * SYMBOL_HALF + GAP;
     case "fills":
-    case "veils": return SQUARE * sample.colours.length + GAP;
-    default: return 0;
+    case "veils":
+      return SQUARE * sample.colours.length + GAP;
+    default:
+      return 0;
   }
 }
 
@@ -96,15 +107,15 @@ function arranged(panel, limit, size, titleAlone, entries) {
 }
 
 /**
- * Arranges the title and the legend of a panel on lines of a length. Where the lines allowed are fewer than it needs, the
- * legend is left out, and the title is cut.
+ * Arranges the title and the legend of a panel on lines of a length. Where the lines allowed are fewer than
+ * it needs, the legend is left out, and the title is cut.
  *
  * @param {object} panel
  * @param {number} limit
  * @param {number} size of letters
  * @param {number} [most] lines allowed
- * @returns {{height: number, lines: number, whole: boolean, draw: (surface: object, palette: object, x: number,
- *   bottom: number) => void}} `whole`: nothing was left out
+ * @returns {{height: number, lines: number, whole: boolean, draw: (surface: object, palette: object, x:
+ *   number, bottom: number) => void}} `whole`: nothing was left out
  */
 export function headingOf(panel, limit, size, most = Infinity) {
   const entries = legendEntries(panel);

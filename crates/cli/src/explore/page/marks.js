@@ -17,7 +17,8 @@ const CAP = 3.5;
 
 /** Points in the frame with their places; `number` is that in the description. */
 function shownMarks(panel, frame) {
-  return panel.marks.map((mark, number) => ({ mark, number, ...frame.place(mark.x, mark.y) }))
+  return panel.marks
+    .map((mark, number) => ({ mark, number, ...frame.place(mark.x, mark.y) }))
     .filter(({ x, y }) => frame.holds(x, y, 0.5));
 }
 
@@ -53,12 +54,18 @@ export function drawMarks(surface, panel, frame, palette, drawn, highlight) {
   const bars = shown.flatMap(({ mark }) => barLines(mark, frame).map((bar) => ({ ...bar, mark })));
   if (named) bars.forEach(({ line }) => curves.add(line));
   const names = shown.map(({ mark, x, y }) => ({
-    x, y,
+    x,
+    y,
     halfX: mark.label ? 0.5 * (wordsWidth(mark.label, frame.size) + AIR) : 0,
     halfY: 0.5 * (frame.size + AIR),
     preferred: mark.offset,
   }));
-  const centres = placeNames(names, curves, notes.map(({ place }) => place), frame);
+  const centres = placeNames(
+    names,
+    curves,
+    notes.map(({ place }) => place),
+    frame,
+  );
   centres.forEach((centre, i) => {
     if (centre) drawTie(surface, names[i], centre, palette.line(shown[i].mark.colour));
   });
@@ -84,7 +91,8 @@ export function drawMarks(surface, panel, frame, palette, drawn, highlight) {
 /** Draws a ring around a point that is pointed at. */
 export function drawRing(surface, x, y, colour) {
   const ring = [];
-  for (let i = 0; i <= 32; i++) ring.push(x + 7 * Math.cos((i * Math.PI) / 16), y + 7 * Math.sin((i * Math.PI) / 16));
+  for (let i = 0; i <= 32; i++)
+    ring.push(x + 7 * Math.cos((i * Math.PI) / 16), y + 7 * Math.sin((i * Math.PI) / 16));
   surface.line(ring, { colour, width: 1.4 });
 }
 
@@ -96,7 +104,13 @@ function placedNotes(panel, frame, points, curves) {
     const halfX = 0.5 * wordsWidth(note.text, frame.size) + BACKING;
     const box = { ...at, halfX, halfY: 0.5 * frame.size + BACKING };
     if (2 * halfX > frame.width) continue;
-    const place = placeNote(box, points, curves, notes.map((other) => other.place), frame);
+    const place = placeNote(
+      box,
+      points,
+      curves,
+      notes.map((other) => other.place),
+      frame,
+    );
     if (place) notes.push({ note, place });
   }
   return notes;

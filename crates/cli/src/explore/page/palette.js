@@ -1,6 +1,6 @@
 /**
- * Colours of pictures in light and dark. Descriptions carry colours chosen for white paper; on a dark ground lines
- * keep their hue and become lighter, and the pale fills of maps become dark ones.
+ * Colours of pictures in light and dark. Descriptions carry colours chosen for white paper; on a dark ground
+ * lines keep their hue and become lighter, and the pale fills of maps become dark ones.
  */
 
 /** The theme of pictures on white, as the command line draws them. */
@@ -10,12 +10,15 @@ export const LIGHT_THEME = { ink: "#282828", grid: "#e4e4e4", background: "#ffff
 export const DARK_THEME = { ink: "#d8dce2", grid: "#2c3138", background: "#15181c" };
 
 /** Least contrast (as WCAG defines it) of lines and of words with the ground. */
-const LINE_CONTRAST = 3;
+const LINE_CONTRAST = 4.2;
 const WORD_CONTRAST = 4.5;
 /** Colours with less chroma than this are greys. */
 const GREY = 0.02;
 /** Colours with more chroma than this are taken for full ones by maps: only paler ones tend to the ground. */
 const FULL = 0.1;
+/** The lightest fills on a dark ground: of full colours, and of those that are dark on a light one. */
+const LIGHTEST_FULL = 0.66;
+const LIGHTEST = 0.87;
 
 /**
  * Returns red, green and blue of a CSS colour, 0 to 255 each.
@@ -44,7 +47,10 @@ export function parseColour(colour) {
 
 /** Formats red, green and blue as a hexadecimal colour. */
 export function formatColour(parts) {
-  const pair = (x) => Math.round(Math.min(255, Math.max(0, x))).toString(16).padStart(2, "0");
+  const pair = (x) =>
+    Math.round(Math.min(255, Math.max(0, x)))
+      .toString(16)
+      .padStart(2, "0");
   return "#" + parts.map(pair).join("");
 }
 
@@ -101,7 +107,8 @@ function fromLab([light, a, b]) {
 function shown(light, a, b) {
   for (let part = 1; part > 0; part -= 0.05) {
     const parts = fromLab([light, part * a, part * b]);
-    if (parts.every((x) => x >= -1e-4 && x <= 1.0001)) return encoded(parts.map((x) => Math.min(1, Math.max(0, x))));
+    if (parts.every((x) => x >= -1e-4 && x <= 1.0001))
+      return encoded(parts.map((x) => Math.min(1, Math.max(0, x))));
   }
   return encoded(fromLab([light, 0, 0]).map((x) => Math.min(1, Math.max(0, x))));
 }
@@ -130,8 +137,8 @@ function darkened(parts, ground, ink) {
   }
   // Pale colours have lost chroma to white; the darker they become the more of it they need to be told apart.
   const paleness = Math.max(0, 1 - chroma / FULL) * light;
-  const inverted = darkest + (1 - light) * 0.9 + 0.12;
-  const made = paleness > 0 || light > 0.8 ? inverted : Math.min(light, 0.72);
+  const inverted = Math.min(LIGHTEST, darkest + (1 - light) * 0.9 + 0.12);
+  const made = paleness > 0 || light > 0.8 ? inverted : Math.min(light, LIGHTEST_FULL);
   return shown(made, a * (1 + 0.5 * paleness), b * (1 + 0.5 * paleness));
 }
 
@@ -141,8 +148,8 @@ const known = new Map();
  * Prepares the colours of a theme for drawing.
  *
  * @param {{ink?: string, grid?: string, background?: string, mark?: string}} [theme] CSS colours
- * @returns {{ink: string, grid: string, paper: string, dark: boolean, line: (c: string) => string,
- *   word: (c: string) => string, fill: (c: string) => string}} `line`, `word` and `fill` give the colour that a colour
+ * @returns {{ink: string, grid: string, paper: string, dark: boolean, line: (c: string) => string, word: (c:
+ *   string) => string, fill: (c: string) => string}} `line`, `word` and `fill` give the colour that a colour
  *   of a description has in this theme.
  */
 export function paletteOf(theme = {}) {

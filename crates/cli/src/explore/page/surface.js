@@ -1,4 +1,7 @@
-/** Surfaces on which pictures are drawn by the same calls: the canvas that is seen, and the SVG that is exported. */
+/**
+ * Surfaces on which pictures are drawn by the same calls: the canvas that is seen, and the SVG that is
+ * exported.
+ */
 
 import { PICTURE_FONT, SCRIPT_LOWER, SCRIPT_RAISE, SCRIPT_SIZE, splitSymbols, wordsWidth } from "./words.js";
 import { draw } from "./draw.js";
@@ -17,8 +20,8 @@ function below(level, size) {
 }
 
 /**
- * A canvas element as a surface. All lengths are CSS pixels; places are flat lists x, y, x, y, in which a NaN begins a
- * new piece.
+ * A canvas element as a surface. All lengths are CSS pixels; places are flat lists x, y, x, y, in which a NaN
+ * begins a new piece.
  */
 export class CanvasSurface {
   /**
@@ -139,9 +142,10 @@ export class CanvasSurface {
   stamp(xy, colour, radius) {
     const { context, ratio } = this;
     const half = Math.ceil(radius * ratio + 1);
-    const stamp = typeof OffscreenCanvas === "undefined"
-      ? Object.assign(document.createElement("canvas"), { width: 2 * half, height: 2 * half })
-      : new OffscreenCanvas(2 * half, 2 * half);
+    const stamp =
+      typeof OffscreenCanvas === "undefined"
+        ? Object.assign(document.createElement("canvas"), { width: 2 * half, height: 2 * half })
+        : new OffscreenCanvas(2 * half, 2 * half);
     const inner = stamp.getContext("2d");
     inner.fillStyle = colour;
     inner.arc(half, half, radius * ratio, 0, 2 * Math.PI);
@@ -158,8 +162,8 @@ export class CanvasSurface {
    * @param {string} text
    * @param {number} x
    * @param {number} y
-   * @param {{colour: string, size: number, align?: "left" | "middle" | "right", upwards?: boolean, strong?: boolean,
-   *   halo?: string}} look `halo` is the colour of an edge around the letters
+   * @param {{colour: string, size: number, align?: "left" | "middle" | "right", upwards?: boolean, strong?:
+   *   boolean, halo?: string}} look `halo` is the colour of an edge around the letters
    */
   words(text, x, y, { colour, size, align = "left", upwards = false, strong = false, halo = null }) {
     const { context } = this;
@@ -185,7 +189,8 @@ export class CanvasSurface {
 function escaped(text) {
   const names = { "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;" };
   // Control characters are not allowed in XML at all.
-  return String(text).replace(/[\u0000-\u0008\u000b\u000c\u000e-\u001f\ufffe\uffff]/g, "")
+  return String(text)
+    .replace(/[\u0000-\u0008\u000b\u000c\u000e-\u001f\ufffe\uffff]/g, "")
     .replace(/[&<>"]/g, (letter) => names[letter]);
 }
 
@@ -219,8 +224,10 @@ export class SvgSurface {
     const dashes = dash.length ? ` stroke-dasharray="${dash.map(tenth).join(" ")}"` : "";
     const seen = opacity < 1 ? ` stroke-opacity="${opacity}"` : "";
     const cap = round ? ` stroke-linecap="round"` : "";
-    this.elements.push(`<path fill="none" stroke="${escaped(colour)}" stroke-width="${Math.round(100 * width) / 100}"`
-      + ` stroke-linejoin="round"${cap}${dashes}${seen} d="${path}"/>`);
+    this.elements.push(
+      `<path fill="none" stroke="${escaped(colour)}" stroke-width="${Math.round(100 * width) / 100}"` +
+        ` stroke-linejoin="round"${cap}${dashes}${seen} d="${path}"/>`,
+    );
   }
 
   area(xy, { colour, opacity = 1 }) {
@@ -238,31 +245,41 @@ export class SvgSurface {
       paths.push(`M${left} ${top}h${across}v${down}h${-across}z`);
     }
     if (!paths.length) return;
-    this.elements.push(`<path fill="${escaped(colour)}" shape-rendering="crispEdges" d="${paths.join("")}"/>`);
+    this.elements.push(
+      `<path fill="${escaped(colour)}" shape-rendering="crispEdges" d="${paths.join("")}"/>`,
+    );
   }
 
   dots(xy, { colour, radius }) {
     const paths = [];
     for (let i = 0; i + 1 < xy.length; i += 2) paths.push(`M${tenth(xy[i])} ${tenth(xy[i + 1])}h0`);
     if (!paths.length) return;
-    this.elements.push(`<path fill="none" stroke="${escaped(colour)}" stroke-width="${tenth(2 * radius)}"`
-      + ` stroke-linecap="round" d="${paths.join("")}"/>`);
+    this.elements.push(
+      `<path fill="none" stroke="${escaped(colour)}" stroke-width="${tenth(2 * radius)}"` +
+        ` stroke-linecap="round" d="${paths.join("")}"/>`,
+    );
   }
 
   words(text, x, y, { colour, size, align = "left", upwards = false, strong = false, halo = null }) {
     const anchor = { left: "start", middle: "middle", right: "end" }[align];
     const turned = upwards ? ` transform="rotate(-90 ${tenth(x)} ${tenth(y)})"` : "";
     const weight = strong ? ` font-weight="600"` : "";
-    const edge = halo ? ` paint-order="stroke" stroke="${escaped(halo)}" stroke-width="3" stroke-linejoin="round"` : "";
+    const edge = halo
+      ? ` paint-order="stroke" stroke="${escaped(halo)}" stroke-width="3" stroke-linejoin="round"`
+      : "";
     let level = 0;
     const parts = splitSymbols(text).map((part) => {
       const shift = tenth(below(part.level, size) - below(level, size));
       level = part.level;
       const small = level ? ` font-size="${tenth(SCRIPT_SIZE * size)}"` : "";
-      return small || shift ? `<tspan${small} dy="${shift}">${escaped(part.text)}</tspan>` : escaped(part.text);
+      return small || shift
+        ? `<tspan${small} dy="${shift}">${escaped(part.text)}</tspan>`
+        : escaped(part.text);
     });
-    this.elements.push(`<text x="${tenth(x)}" y="${tenth(y + MIDDLE * size)}" font-size="${size}"${weight}`
-      + ` fill="${escaped(colour)}" text-anchor="${anchor}"${edge}${turned}>${parts.join("")}</text>`);
+    this.elements.push(
+      `<text x="${tenth(x)}" y="${tenth(y + MIDDLE * size)}" font-size="${size}"${weight}` +
+        ` fill="${escaped(colour)}" text-anchor="${anchor}"${edge}${turned}>${parts.join("")}</text>`,
+    );
   }
 
   /** Corners in the language of paths, in steps from corner to corner. */
@@ -287,8 +304,10 @@ export class SvgSurface {
   /** Returns the SVG of all that was drawn. */
   text() {
     const [width, height] = [tenth(this.width), tenth(this.height)];
-    return `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" viewBox="0 0 ${width} ${height}"`
-      + ` font-family="${escaped(PICTURE_FONT)}" xml:space="preserve">\n${this.elements.join("\n")}\n</svg>\n`;
+    return (
+      `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" viewBox="0 0 ${width} ${height}"` +
+      ` font-family="${escaped(PICTURE_FONT)}" xml:space="preserve">\n${this.elements.join("\n")}\n</svg>\n`
+    );
   }
 }
 

@@ -37,15 +37,20 @@ function regular(x, y, corners, radius, first) {
 /** The corners of a symbol that encloses something. */
 function symbolCorners(symbol, x, y) {
   switch (symbol) {
-    case "dot": return regular(x, y, 16, DOT, 0);
-    case "square": return regular(x, y, 4, 1.25 * RADIUS, 0.125);
-    case "diamond": return regular(x, y, 4, 1.35 * RADIUS, 0);
-    case "triangle": return regular(x, y, 3, 1.4 * RADIUS, 0);
+    case "dot":
+      return regular(x, y, 16, DOT, 0);
+    case "square":
+      return regular(x, y, 4, 1.25 * RADIUS, 0.125);
+    case "diamond":
+      return regular(x, y, 4, 1.35 * RADIUS, 0);
+    case "triangle":
+      return regular(x, y, 3, 1.4 * RADIUS, 0);
     case "star": {
       const dents = regular(x, y, 5, 0.68 * RADIUS, 0.1);
       return regular(x, y, 5, 1.65 * RADIUS, 0).flatMap((tip, i) => [tip, dents[i]]);
     }
-    default: return regular(x, y, 36, RADIUS, 0);
+    default:
+      return regular(x, y, 36, RADIUS, 0);
   }
 }
 

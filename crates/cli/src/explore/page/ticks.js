@@ -53,8 +53,9 @@ export function valueAt(scale, coordinate) {
 export function ticksOf(scale, pixels, fits) {
   const choices = tickChoices(scale);
   // One number says nothing of an axis, if two can be had.
-  const chosen = choices.find((ticks) => ticks.length >= 2 && fits(ticks))
-    ?? choices.find((ticks) => ticks.length >= 1 && fits(ticks));
+  const chosen =
+    choices.find((ticks) => ticks.length >= 2 && fits(ticks)) ??
+    choices.find((ticks) => ticks.length >= 1 && fits(ticks));
   const named = chosen ?? choices.findLast((ticks) => ticks.length >= 1)?.slice(0, 1) ?? [];
   return { named, small: smallTicks(scale, pixels, named) };
 }
@@ -117,7 +118,10 @@ function digitsWithin(scale, digits) {
 
 /** Ticks at these digits of each decade. */
 function digitTicks(scale, digits) {
-  return digitsWithin(scale, digits).map(({ digit, exponent, at }) => ({ at, label: digitLabel(digit, exponent) }));
+  return digitsWithin(scale, digits).map(({ digit, exponent, at }) => ({
+    at,
+    label: digitLabel(digit, exponent),
+  }));
 }
 
 /** Logarithmic axes show by small ticks that they are. */
@@ -160,8 +164,8 @@ export function powerOfTen(n) {
 }
 
 /**
- * Returns a value as a reader notes it down beside a picture: with so many significant digits, and a power of ten where
- * zeros would hide its size.
+ * Returns a value as a reader notes it down beside a picture: with so many significant digits, and a power of
+ * ten where zeros would hide its size.
  *
  * @param {number} value
  * @param {number} [digits]

@@ -3,18 +3,51 @@
 /** The font of all pictures: that of the reader's system. */
 export const PICTURE_FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'DejaVu Sans', Arial, sans-serif";
 
-/** Size of raised and lowered letters, and how far these stand off the line, as parts of the size of the others. */
+/**
+ * Size of raised and lowered letters, and how far these stand off the line, as parts of the size of the
+ * others.
+ */
 export const SCRIPT_SIZE = 0.74;
 export const SCRIPT_LOWER = 0.22;
 export const SCRIPT_RAISE = 0.36;
 
 const GREEK = {
-  alpha: "α", beta: "β", gamma: "γ", delta: "δ", epsilon: "ε", zeta: "ζ", eta: "η", theta: "θ", kappa: "κ",
-  lambda: "λ", mu: "μ", nu: "ν", xi: "ξ", pi: "π", rho: "ρ", sigma: "σ", tau: "τ", phi: "φ", chi: "χ", psi: "ψ",
-  omega: "ω", Gamma: "Γ", Delta: "Δ", Theta: "Θ", Lambda: "Λ", Xi: "Ξ", Pi: "Π", Sigma: "Σ", Phi: "Φ", Psi: "Ψ",
+  alpha: "α",
+  beta: "β",
+  gamma: "γ",
+  delta: "δ",
+  epsilon: "ε",
+  zeta: "ζ",
+  eta: "η",
+  theta: "θ",
+  kappa: "κ",
+  lambda: "λ",
+  mu: "μ",
+  nu: "ν",
+  xi: "ξ",
+  pi: "π",
+  rho: "ρ",
+  sigma: "σ",
+  tau: "τ",
+  phi: "φ",
+  chi: "χ",
+  psi: "ψ",
+  omega: "ω",
+  Gamma: "Γ",
+  Delta: "Δ",
+  Theta: "Θ",
+  Lambda: "Λ",
+  Xi: "Ξ",
+  Pi: "Π",
+  Sigma: "Σ",
+  Phi: "Φ",
+  Psi: "Ψ",
   Omega: "Ω",
 };
-const GREEK_NAME = new RegExp(`(?<![\\p{L}\\p{N}_])(${Object.keys(GREEK).join("|")})(?![\\p{L}\\p{N}])`, "gu");
+const GREEK_NAME = new RegExp(
+  `(?<![\\p{L}\\p{N}_])(${Object.keys(GREEK).join("|")})(?![\\p{L}\\p{N}])`,
+  "gu",
+);
 const RAISED = "⁰¹²³⁴⁵⁶⁷⁸⁹⁻";
 const LOWERED = "₀₁₂₃₄₅₆₇₈₉ₛ";
 const PLAIN_RAISED = "0123456789−";
@@ -22,8 +55,8 @@ const PLAIN_LOWERED = "0123456789s";
 const SCRIPTS = /(?<![\p{L}\p{N}_])(\p{L})_([\p{L}\p{N}]+)|([⁰¹²³⁴⁵⁶⁷⁸⁹⁻]+)|([₀₁₂₃₄₅₆₇₈₉ₛ]+)/gu;
 
 /**
- * Splits a text into parts on the line, below it and above it. A subscript is what follows a single letter and an
- * underscore, as in `V_H` and `tau_ss`; names of Greek letters become these letters.
+ * Splits a text into parts on the line, below it and above it. A subscript is what follows a single letter
+ * and an underscore, as in `V_H` and `tau_ss`; names of Greek letters become these letters.
  *
  * @param {string} text
  * @returns {{text: string, level: -1 | 0 | 1}[]}
@@ -76,7 +109,10 @@ export function wordsWidth(text, size) {
   let width = widths.get(key);
   if (width === undefined) {
     const parts = splitSymbols(text);
-    width = parts.reduce((sum, part) => sum + lettersWidth(part.text, part.level ? SCRIPT_SIZE * size : size), 0);
+    width = parts.reduce(
+      (sum, part) => sum + lettersWidth(part.text, part.level ? SCRIPT_SIZE * size : size),
+      0,
+    );
     if (widths.size > 5000) widths.clear();
     widths.set(key, width);
   }
@@ -96,7 +132,8 @@ function unbroken(text) {
 }
 
 /**
- * Breaks a text into lines none of which is wider than `limit`: between words, and within one that is too long alone.
+ * Breaks a text into lines none of which is wider than `limit`: between words, and within one that is too
+ * long alone.
  *
  * @returns {string[]}
  */
