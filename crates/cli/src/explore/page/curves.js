@@ -8,6 +8,15 @@ import { dashesOf } from "./symbols.js";
 const BEYOND = 6;
 /** Points per pixel of width above which runs within a column of pixels are replaced by their extremes. */
 const DENSE = 2;
+/**
+ * Points of other curves nearer to the one before than this are left out; of more than so many, nearer than
+ * that.
+ */
+const CLOSE = 0.6;
+const MANY = 300000;
+const CLOSE_OF_MANY = 2;
+/** Lines of more places than this are drawn one pixel of the screen broad at most, which is much faster. */
+const HAIRLINES = 2000;
 /** A line longer than this fills an area, where no pattern can be seen: it is drawn unbroken. */
 const FILLS = 60000;
 /** Room between a curve and the map that it lies on. */
@@ -83,7 +92,8 @@ class CutLine {
   }
 
   to(x, y) {
-    const [x0, y0] = [this.x, this.y];
+    const x0 = this.x;
+    const y0 = this.y;
     this.x = x;
     this.y = y;
     if (x0 !== x0) {
@@ -144,47 +154,78 @@ export function linePlaces(series, frame) {
   const line = new CutLine(frame.x - BEYOND, frame.y - BEYOND, frame.right + BEYOND, frame.bottom + BEYOND);
   const [x0, perX] = [frame.x - frame.scales.x.lo * frame.perX, frame.perX];
   const [y0, perY] = [frame.bottom + frame.scales.y.lo * frame.perY, frame.perY];
-  if (last - first <= DENSE * frame.width) {
-    for (let i = first; i < last; i++) {
-      if (y[i] !== y[i]) line.break();
-      else line.to(x0 + perX * x[i], y0 - perY * y[i]);
-    }
-    line.break();
+  const place = (i) => line.to(x0 + perX * x[i], y0 - perY * y[i]);
+  if (sorted && last - first > DENSE * frame.width) {
+    addRuns(line, place, { x, y, first, last, column: (i) => Math.floor(x0 + perX * x[i]) });
     return line.xy;
   }
-  // A run: the numbers of its first, least, largest and last point.
-  let [column, begin, low, high, end] = [NaN, 0, 0, 0, -1];
+  const apart = steps(last - first, frame);
+  let skipped = -1;
+  for (let i = first; i < last; i++) {
+    const px = x0 + perX * x[i];
+    const py = y0 - perY * y[i];
+    if (py !== py) {
+      if (skipped >= 0) place(skipped);
+      line.break();
+      skipped = -1;
+    } else if (Math.abs(px - line.x) + Math.abs(py - line.y) < apart) skipped = i;
+    else {
+      line.to(px, py);
+      skipped = -1;
+    }
+  }
+  if (skipped >= 0) place(skipped);
+  line.break();
+  return line.xy;
+}
+
+/** How far apart the points of a curve are at least that is drawn, in pixels: none of few is left out. */
+function steps(count, frame) {
+  if (count <= DENSE * frame.width) return 0;
+  return count < MANY ? CLOSE : CLOSE_OF_MANY;
+}
+
+/**
+ * Adds the runs of a curve that grows within each column of pixels: the first point, the extremes and the
+ * last.
+ */
+function addRuns(line, place, { x, y, first, last, column }) {
+  let begin = first;
+  let low = first;
+  let high = first;
+  let end = -1;
+  let current = NaN;
   const flush = () => {
     if (end < begin) return;
-    const at = (i) => line.to(x0 + perX * x[i], y0 - perY * y[i]);
-    at(begin);
-    const [one, other] = low < high ? [low, high] : [high, low];
-    if (one > begin && one < end) at(one);
-    if (other > one && other < end) at(other);
-    if (end > begin) at(end);
+    place(begin);
+    const one = Math.min(low, high);
+    const other = Math.max(low, high);
+    if (one > begin && one < end) place(one);
+    if (other > one && other < end) place(other);
+    if (end > begin) place(end);
     end = -1;
-    begin = 0;
   };
   for (let i = first; i < last; i++) {
     const up = y[i];
     if (up !== up) {
       flush();
       line.break();
-      column = NaN;
+      current = NaN;
       continue;
     }
-    const here = Math.floor(x0 + perX * x[i]);
-    if (here !== column) {
+    const here = column(i);
+    if (here !== current) {
       flush();
-      column = here;
-      begin = low = high = i;
+      current = here;
+      begin = i;
+      low = i;
+      high = i;
     } else if (up < y[low]) low = i;
     else if (up > y[high]) high = i;
     end = i;
   }
   flush();
   line.break();
-  return line.xy;
 }
 
 /** The places of dots in the frame, each half pixel once. */
@@ -329,7 +370,8 @@ export function drawCurves(surface, panel, frame, palette, highlight) {
       if (lineLength(xy) >= FILLS) dash = [];
       else if (!seriesCoordinates(series, frame.scales).sorted) drawn = firstTimes(xy, frame);
     }
-    surface.line(drawn, { colour, width, dash, opacity });
+    const breadth = xy.length > 2 * HAIRLINES ? Math.min(width, 1 / surface.ratio) : width;
+    surface.line(drawn, { colour, width: breadth, dash, opacity });
     return { xy, dots: false };
   });
 }

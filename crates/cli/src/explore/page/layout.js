@@ -42,8 +42,8 @@ function blocksOf(description) {
   return description.blocks ?? [{ title: "", columns: [[description]] }];
 }
 
-/** Returns all panels of a description, block by block, each column by column from its top. */
-export function panelsOf(description) {
+/** All panels of a description, block by block, each column by column from its top. */
+function panelsOf(description) {
   return blocksOf(description).flatMap((block) => block.columns.flat());
 }
 

@@ -4,10 +4,7 @@
  */
 
 /** The theme of pictures on white, as the command line draws them. */
-export const LIGHT_THEME = { ink: "#282828", grid: "#e4e4e4", background: "#ffffff" };
-
-/** A theme for dark surroundings. */
-export const DARK_THEME = { ink: "#d8dce2", grid: "#2c3138", background: "#15181c" };
+const LIGHT_THEME = { ink: "#282828", grid: "#e4e4e4", background: "#ffffff" };
 
 /** Least contrast (as WCAG defines it) of lines and of words with the ground. */
 const LINE_CONTRAST = 4.2;
@@ -45,8 +42,8 @@ export function parseColour(colour) {
   return [0, 0, 0];
 }
 
-/** Formats red, green and blue as a hexadecimal colour. */
-export function formatColour(parts) {
+/** Red, green and blue as a hexadecimal colour. */
+function formatColour(parts) {
   const pair = (x) =>
     Math.round(Math.min(255, Math.max(0, x)))
       .toString(16)
@@ -73,8 +70,8 @@ function luminance(parts) {
   return 0.2126 * r + 0.7152 * g + 0.0722 * b;
 }
 
-/** Returns the contrast of two colours given as red, green and blue: 1 (none) to 21. */
-export function colourContrast(a, b) {
+/** The contrast of two colours given as red, green and blue: 1 (none) to 21. */
+function colourContrast(a, b) {
   const [low, high] = [luminance(a), luminance(b)].sort((x, y) => x - y);
   return (high + 0.05) / (low + 0.05);
 }

@@ -24,12 +24,10 @@ const COARSE = 0.006;
 const PIXEL = 0.6;
 /** Half the length of the box's sides; curves keep within this part of it. */
 const INSIDE = 0.94;
-/**
- * Radius of the sphere around the box, and how much larger than the room that sphere may be: few directions
- * need all.
- */
+/** Radius of the sphere around the box. */
 const SPHERE = Math.sqrt(3);
-const FILLED = 1.25;
+/** A name that would lie so many pixels outside of the surface is left out. */
+const OUTSIDE = 24;
 /** Edges shorter than this have no numbers. */
 const SHORT = 30;
 
@@ -127,9 +125,10 @@ export class SpaceView {
   constructor({ azimuth, elevation, zoom }, { width, height }) {
     const [a, e] = [(azimuth * Math.PI) / 180, (elevation * Math.PI) / 180];
     this.size = Math.min(width, height) < 240 ? 10.5 : 12;
-    // Room for the labels around the sphere.
-    const room = Math.min(width - 6.5 * this.size, height - 4.5 * this.size);
-    const scale = ((zoom * Math.max(30, room)) / (2 * SPHERE)) * FILLED;
+    // However it is turned around the upright axis, the box and its labels have room.
+    const across = (0.5 * width - 3.4 * this.size) / Math.SQRT2;
+    const down = (0.5 * height - 3 * this.size) / (Math.SQRT2 * Math.abs(Math.sin(e)) + Math.cos(e));
+    const scale = zoom * Math.max(15, Math.min(across, down));
     this.scale = scale;
     this.middle = [width / 2, height / 2];
     this.across = [-scale * Math.sin(a), scale * Math.cos(a), 0];
@@ -264,16 +263,16 @@ function drawBox(surface, seen, palette, space) {
   }
   surface.line(grid, { colour: palette.grid, width: 0.8 });
   surface.line(sides, { colour: mixColours(palette.ink, palette.paper, 0.6), width: 0.8 });
-  axes.forEach((edge, axis) =>
-    drawAxis(
-      surface,
-      seen,
-      palette,
-      edge,
-      ticks[axis].named.map((tick) => ({ label: tick.label, part: 0.5 * (1 + share(tick, axis)) })),
-      space.content.labels[axis],
-    ),
-  );
+  // Numbers of one axis keep off those of the others, and names off all numbers.
+  const taken = [];
+  const names = axes.map((edge, axis) => {
+    const places = ticks[axis].named.map((tick) => ({
+      label: tick.label,
+      part: 0.5 * (1 + share(tick, axis)),
+    }));
+    return drawAxis(surface, seen, palette, edge, places, taken);
+  });
+  names.forEach((draw, axis) => draw?.(space.content.labels[axis]));
 }
 
 /**
@@ -300,35 +299,52 @@ function axisEdge(axis, far, seen) {
   return edges.length < 2 || better(edges[0], edges[1]) ? edges[0] : edges[1];
 }
 
-function drawAxis(surface, seen, palette, { from, to }, ticks, name) {
+/** Draws an axis with its numbers, and returns how its name is written. */
+function drawAxis(surface, seen, palette, { from, to }, ticks, taken) {
   const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
   const length = Math.hypot(dx, dy);
   surface.line([from[0], from[1], to[0], to[1]], { colour: palette.ink, width: 1 });
-  if (length < SHORT) return;
-  const middle = [0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])];
+  if (length < SHORT) return null;
   // Across the edge, away from the box.
   let [ox, oy] = [dy / length, -dx / length];
-  if (ox * (middle[0] - seen.middle[0]) + oy * (middle[1] - seen.middle[1]) < 0) [ox, oy] = [-ox, -oy];
+  const [mx, my] = [0.5 * (from[0] + to[0]) - seen.middle[0], 0.5 * (from[1] + to[1]) - seen.middle[1]];
+  if (ox * mx + oy * my < 0) [ox, oy] = [-ox, -oy];
   const { size } = seen;
   const look = { colour: palette.ink, size, align: "middle" };
+  const free = (box) => taken.every((other) => !overlap(box, other));
   let widest = 0;
   for (const { label, part } of ticks) {
     const [x, y] = [from[0] + part * dx, from[1] + part * dy];
     surface.line([x, y, x + 4 * ox, y + 4 * oy], { colour: palette.ink, width: 0.9 });
     const half = 0.5 * wordsWidth(label, size);
     const away = 7 + reach(ox, oy, half, 0.5 * size);
+    const box = { x: x + away * ox, y: y + away * oy, halfX: half + 2, halfY: 0.5 * size };
+    if (!free(box)) continue;
+    taken.push(box);
     widest = Math.max(widest, half);
-    surface.words(label, x + away * ox, y + away * oy, look);
+    surface.words(label, box.x, box.y, look);
   }
-  const half = 0.5 * wordsWidth(name, size);
-  // Upright axes have their name turned, as others have.
-  const steep = Math.abs(dy) > 2.2 * Math.abs(dx);
-  const [across, up] = steep ? [0.5 * size, half] : [half, 0.5 * size];
-  const away = 11 + 2 * reach(ox, oy, widest, 0.5 * size) + reach(ox, oy, across, up);
-  const inside = (at, room, most) => Math.min(most - room - 2, Math.max(room + 2, at));
-  const x = inside(middle[0] + away * ox, across, surface.width);
-  const y = inside(middle[1] + away * oy, up, surface.height);
-  surface.words(name, x, y, { ...look, upwards: steep, halo: palette.paper });
+  return (name) => {
+    const half = 0.5 * wordsWidth(name, size);
+    // Upright axes have their name turned, as others have.
+    const upwards = Math.abs(dy) > 2.2 * Math.abs(dx);
+    const [halfX, halfY] = upwards ? [0.5 * size, half] : [half, 0.5 * size];
+    const away = 11 + 2 * reach(ox, oy, widest, 0.5 * size) + reach(ox, oy, halfX, halfY);
+    const inside = (at, room, most) => Math.min(most - room - 2, Math.max(room + 2, at));
+    const places = [0.5, 0.4, 0.6, 0.3, 0.7].flatMap((part) => {
+      const wanted = [from[0] + part * dx + away * ox, from[1] + part * dy + away * oy];
+      const [x, y] = [inside(wanted[0], halfX, surface.width), inside(wanted[1], halfY, surface.height)];
+      return Math.hypot(x - wanted[0], y - wanted[1]) < OUTSIDE ? [{ x, y, halfX, halfY }] : [];
+    });
+    const box = places.find(free) ?? places[0];
+    if (!box) return;
+    taken.push(box);
+    surface.words(name, box.x, box.y, { ...look, upwards, halo: palette.paper });
+  };
+}
+
+function overlap(a, b) {
+  return Math.abs(a.x - b.x) < a.halfX + b.halfX && Math.abs(a.y - b.y) < a.halfY + b.halfY;
 }
 
 /** How far the middle of words of that size is from an edge that touches them, in the direction given. */

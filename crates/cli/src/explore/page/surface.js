@@ -5,13 +5,44 @@
 
 import { PICTURE_FONT, SCRIPT_LOWER, SCRIPT_RAISE, SCRIPT_SIZE, splitSymbols, wordsWidth } from "./words.js";
 import { draw } from "./draw.js";
+import { parseColour } from "./palette.js";
 
 /** Letters are centred across their line by half of the height of small ones, as a part of their size. */
 const MIDDLE = 0.35;
-/** A path with more corners than this is stroked in pieces, as one path is slow. */
-const PIECE = 1500;
-/** More dots than this are stamped on a canvas rather than drawn. */
-const STAMPED = 400;
+/**
+ * A path with more corners than this is stroked in pieces and without rounded corners, as one path is slow.
+ */
+const PIECE = 500;
+/**
+ * More dots than this are painted as one picture, each at one of so many places within a pixel, across and
+ * down.
+ */
+const STAMPED = 1000;
+const FINE = 4;
+
+/** A canvas that is not shown. */
+function emptyCanvas(width, height) {
+  if (typeof OffscreenCanvas !== "undefined") return new OffscreenCanvas(width, height);
+  return Object.assign(document.createElement("canvas"), { width, height });
+}
+
+/** How much a dot covers of the pixels around it, 0 to 255, for its places within a pixel. */
+function dotMasks(radius) {
+  const side = 2 * Math.ceil(radius) + 1;
+  const middle = (side - 1) / 2;
+  const masks = [];
+  for (let place = 0; place < FINE * FINE; place++) {
+    const x = middle + ((place % FINE) + 0.5) / FINE;
+    const y = middle + (Math.floor(place / FINE) + 0.5) / FINE;
+    const mask = new Uint8Array(side * side);
+    for (let k = 0; k < mask.length; k++) {
+      const away = Math.hypot((k % side) + 0.5 - x, Math.floor(k / side) + 0.5 - y);
+      mask[k] = Math.round(255 * Math.min(1, Math.max(0, radius - away + 0.5)));
+    }
+    masks.push(mask);
+  }
+  return { side, masks };
+}
 
 /** How far a part of words stands below the line. */
 function below(level, size) {
@@ -65,7 +96,8 @@ export class CanvasSurface {
     const { context } = this;
     context.save();
     Object.assign(context, { strokeStyle: colour, lineWidth: width, globalAlpha: opacity });
-    Object.assign(context, { lineJoin: "round", lineCap: round ? "round" : "butt" });
+    Object.assign(context, { lineCap: round ? "round" : "butt" });
+    context.lineJoin = xy.length > 2 * PIECE ? "bevel" : "round";
     context.setLineDash(dash);
     // Overlapping pieces would show where a line is seen through, and a dash would begin anew.
     const most = dash.length || opacity < 1 ? Infinity : PIECE;
@@ -139,21 +171,37 @@ export class CanvasSurface {
     context.fill();
   }
 
+  /** Many dots at once: their coverage is computed, and painted as one picture. */
   stamp(xy, colour, radius) {
-    const { context, ratio } = this;
-    const half = Math.ceil(radius * ratio + 1);
-    const stamp =
-      typeof OffscreenCanvas === "undefined"
-        ? Object.assign(document.createElement("canvas"), { width: 2 * half, height: 2 * half })
-        : new OffscreenCanvas(2 * half, 2 * half);
-    const inner = stamp.getContext("2d");
-    inner.fillStyle = colour;
-    inner.arc(half, half, radius * ratio, 0, 2 * Math.PI);
-    inner.fill();
-    const side = (2 * half) / ratio;
+    const { ratio } = this;
+    const across = this.canvas.width;
+    const down = this.canvas.height;
+    const cover = new Uint8Array(across * down);
+    const { side, masks } = dotMasks(radius * ratio);
+    const half = (side - 1) / 2;
     for (let i = 0; i + 1 < xy.length; i += 2) {
-      context.drawImage(stamp, xy[i] - side / 2, xy[i + 1] - side / 2, side, side);
+      const x = ratio * xy[i] - half;
+      const y = ratio * xy[i + 1] - half;
+      const left = Math.floor(x);
+      const top = Math.floor(y);
+      if (!(left >= 0 && top >= 0 && left + side <= across && top + side <= down)) continue;
+      const mask = masks[Math.floor(FINE * (x - left)) + FINE * Math.floor(FINE * (y - top))];
+      for (let row = 0, k = 0; row < side; row++) {
+        let at = left + across * (top + row);
+        for (let column = 0; column < side; column++, k++, at++) {
+          if (mask[k] > cover[at]) cover[at] = mask[k];
+        }
+      }
     }
+    const [red, green, blue] = parseColour(colour);
+    const image = new ImageData(across, down);
+    // In the order of bytes that all machines of today have.
+    const pixels = new Uint32Array(image.data.buffer);
+    const full = red | (green << 8) | (blue << 16);
+    for (let i = 0; i < cover.length; i++) if (cover[i]) pixels[i] = (full | (cover[i] << 24)) >>> 0;
+    const sheet = emptyCanvas(across, down);
+    sheet.getContext("2d").putImageData(image, 0, 0);
+    this.context.drawImage(sheet, 0, 0, this.width, this.height);
   }
 
   /**
@@ -304,10 +352,10 @@ export class SvgSurface {
   /** Returns the SVG of all that was drawn. */
   text() {
     const [width, height] = [tenth(this.width), tenth(this.height)];
-    return (
-      `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" viewBox="0 0 ${width} ${height}"` +
-      ` font-family="${escaped(PICTURE_FONT)}" xml:space="preserve">\n${this.elements.join("\n")}\n</svg>\n`
-    );
+    const size = `width="${width}" height="${height}" viewBox="0 0 ${width} ${height}"`;
+    const font = `font-family="${escaped(PICTURE_FONT)}" xml:space="preserve"`;
+    const elements = this.elements.join("\n");
+    return `<svg xmlns="http://www.w3.org/2000/svg" ${size} ${font}>\n${elements}\n</svg>\n`;
   }
 }
 

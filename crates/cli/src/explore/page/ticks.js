@@ -157,29 +157,8 @@ function niceStep(x) {
   return made ?? 10 * power;
 }
 
-/** Returns 10 to the n, in superscripts. */
-export function powerOfTen(n) {
+/** 10 to the n, in superscripts. */
+function powerOfTen(n) {
   const raised = [...String(Math.abs(n))].map((digit) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[digit]).join("");
   return `10${n < 0 ? "⁻" : ""}${raised}`;
-}
-
-/**
- * Returns a value as a reader notes it down beside a picture: with so many significant digits, and a power of
- * ten where zeros would hide its size.
- *
- * @param {number} value
- * @param {number} [digits]
- */
-export function shortNumber(value, digits = 4) {
-  if (value === 0) return "0";
-  if (!Number.isFinite(value)) return Number.isNaN(value) ? "–" : value > 0 ? "∞" : "−∞";
-  const size = Math.abs(value);
-  const trimmed = (text) => (text.includes(".") ? text.replace(/\.?0+$/, "") : text).replace("-", "−");
-  if (size >= 1e-3 && size < 10 ** Math.max(5, digits)) {
-    const exponent = Math.floor(Math.log10(size));
-    return trimmed(value.toFixed(Math.min(20, Math.max(0, digits - 1 - exponent))));
-  }
-  const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
-  const factor = trimmed(mantissa);
-  return factor === "1" ? powerOfTen(Number(exponent)) : `${factor}·${powerOfTen(Number(exponent))}`;
 }
