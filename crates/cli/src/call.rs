@@ -18,6 +18,8 @@ pub trait Outlet: Send + Sync {
     fn units(&self, _names: &[String]) {}
     /// A row.
     fn row(&self, cells: &[Cell]);
+    /// So many numbers are kept for the picture by now.
+    fn draws(&self, _numbers: usize) {}
     /// All special points, by the names of the columns that they have in CSV.
     fn special(&self, _columns: &[String], _rows: Vec<Vec<Cell>>) {}
     /// Whether it takes rows of every command, also those that are in the object, and an object with all of them.
@@ -113,6 +115,13 @@ impl Call {
         match &self.outlet {
             Some(outlet) => Ok(outlet.program()),
             None => std::env::current_exe(),
+        }
+    }
+
+    /// So many numbers are kept for the picture by now.
+    pub fn draws(&self, numbers: usize) {
+        if let Some(outlet) = &self.outlet {
+            outlet.draws(numbers);
         }
     }
 

@@ -113,6 +113,7 @@ impl Sink for StreamOut<'_> {
 
     fn drawn(&mut self, point: &[f64]) {
         self.drawn.numbers.extend_from_slice(point);
+        self.call.draws(self.drawn.numbers.len());
     }
 
     fn reached(&mut self, fraction: f64) -> Control {

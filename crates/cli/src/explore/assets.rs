@@ -1,57 +1,57 @@
 //! The files of the page.
 
+use include_dir::{Dir, include_dir};
 use std::borrow::Cow;
 use std::path::PathBuf;
 
 /// The environment variable that names a folder with the files of the page, which are then read at each request: for those who change
 /// the page.
 const FOLDER: &str = "TWINSLIP_EXPLORE_PAGE";
-
-/// A file of the page, as the program carries it.
-macro_rules! files {
-    ($($name:literal),* $(,)?) => {
-        [$(($name, include_str!(concat!("page/", $name)))),*]
-    };
-}
-
-/// The modules of the script; the one that begins is [`MAIN`].
-const MODULES: &[(&str, &str)] = &files!["main.js"];
 /// The module that the others are for.
 pub const MAIN: &str = "main.js";
 
+/// The files as the program carries them.
+static PAGE: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/src/explore/page");
+
 /// Names and texts of all modules.
 pub fn modules() -> Vec<(String, Cow<'static, str>)> {
-    let Some(folder) = folder() else {
-        let all = MODULES.iter();
-        return all
-            .map(|(name, text)| ((*name).to_owned(), Cow::Borrowed(*text)))
-            .collect();
+    let named = |name: &str| name.ends_with(".js").then(|| name.to_owned());
+    let mut all: Vec<(String, Cow<'static, str>)> = match folder() {
+        None => PAGE
+            .files()
+            .filter_map(|file| {
+                let name = named(file.path().to_str()?)?;
+                Some((name, Cow::Borrowed(file.contents_utf8()?)))
+            })
+            .collect(),
+        Some(folder) => std::fs::read_dir(folder)
+            .into_iter()
+            .flatten()
+            .filter_map(|file| {
+                let file = file.ok()?;
+                let name = named(file.file_name().to_str()?)?;
+                Some((name, Cow::Owned(std::fs::read_to_string(file.path()).ok()?)))
+            })
+            .collect(),
     };
-    let files = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let mut all: Vec<_> = files
-        .filter_map(|file| {
-            let name = file.file_name().into_string().ok()?;
-            let text = std::fs::read_to_string(file.path()).ok()?;
-            name.ends_with(".js").then_some((name, Cow::Owned(text)))
-        })
-        .collect();
     all.sort();
     all
 }
 
-/// The page.
+/// The page, as a text in which the parts that begin it stand where a server or a file puts its own.
 pub fn index() -> Cow<'static, str> {
-    read("index.html", include_str!("page/index.html"))
+    read("index.html")
 }
 
-/// Its looks.
+/// Its styles.
 pub fn style() -> Cow<'static, str> {
-    read("style.css", include_str!("page/style.css"))
+    read("style.css")
 }
 
-fn read(name: &str, carried: &'static str) -> Cow<'static, str> {
+fn read(name: &str) -> Cow<'static, str> {
     let text = folder().and_then(|folder| std::fs::read_to_string(folder.join(name)).ok());
-    text.map_or(Cow::Borrowed(carried), Cow::Owned)
+    let carried = || PAGE.get_file(name).and_then(|file| file.contents_utf8());
+    text.map_or_else(|| Cow::Borrowed(carried().unwrap_or_default()), Cow::Owned)
 }
 
 fn folder() -> Option<PathBuf> {

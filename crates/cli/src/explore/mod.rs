@@ -2,25 +2,31 @@
 
 mod answer;
 mod assets;
+mod begin;
 mod browser;
 mod bundle;
 mod model;
 mod outbox;
 mod queue;
 mod request;
+mod save;
 mod server;
+mod start;
 
 use super::call::Call;
+use super::words::time;
 use super::{Ending, say};
 use queue::Queue;
 use serde_json::{Map, Value, json};
 use server::{Server, serve};
 use std::io::Write;
 use std::net::{Ipv4Addr, TcpListener};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use tokio::sync::Mutex;
 use twinslip::error::{Error, Result};
-use twinslip_tasks::scene::{Command, ModelOptions, sentence};
+use twinslip_output::{Place, write_whole};
+use twinslip_tasks::scene::ModelOptions;
 
 pub const EXAMPLE: &str = "Example, two interfaces, a scene, and a system of one's own:
   twinslip explore
@@ -42,10 +48,19 @@ pub struct ExploreOptions {
     /// Only print the address of the page, and open no browser
     #[arg(long, help_heading = "Server")]
     no_browser: bool,
+    /// Write the page with its first pictures into FILE.html, which needs no server, instead of serving it
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["port", "no_browser"])]
+    save: Option<PathBuf>,
 }
 
 pub fn run(options: &ExploreOptions, call: &Call) -> Result<Ending> {
-    let begin = begin(options, call)?;
+    let begin = begin::begin(options.scene.as_deref(), call)?;
+    let given = begin["options"].as_object().cloned().unwrap_or_default();
+    if let Some(path) = &options.save {
+        return save(path, &begin, &given, call);
+    }
+    // What is wrong with the options is said here, and not on the page.
+    model::model_description(&request::words("orbit", &given)?)?;
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, options.port));
     let refused = |error: std::io::Error| {
         Error::Input(format!(
@@ -60,6 +75,7 @@ pub fn run(options: &ExploreOptions, call: &Call) -> Result<Ending> {
         port,
         begin,
         queue: Arc::new(Queue::new()),
+        saving: Mutex::new(()),
     });
     let address = server.address();
     let mut out = std::io::stdout();
@@ -100,13 +116,24 @@ fn token() -> Result<String> {
     Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
-/// What the page begins with: the options of the model as `model`, and of a scene its command and options.
-fn begin(options: &ExploreOptions, call: &Call) -> Result<Value> {
-    let _ = (
-        options,
-        call,
-        sentence as fn(&clap::Error) -> String,
-        Command::program(),
-    );
-    Ok(json!({"model": Map::new(), "scene": null}))
+/// Writes the page with the answers to what it shows first.
+fn save(path: &Path, begin: &Value, given: &Map<String, Value>, call: &Call) -> Result<Ending> {
+    let wrong = |action, reason: String| Error::File {
+        action,
+        path: path.to_owned(),
+        reason,
+    };
+    Place::File(path.to_owned()).check()?;
+    let mut progress = call.progress(false);
+    let recording = start::recording(given, |part| progress.come(part))?;
+    let seconds = progress.finish().as_secs_f64();
+    let content = json!({"recording": recording, "state": null}).to_string();
+    let page = save::saved_page(begin, &content).map_err(Error::Input)?;
+    write_whole(path, page.as_bytes()).map_err(|error| wrong("write", error.to_string()))?;
+    let megabytes = page.len() as f64 / 1e6;
+    let (file, time) = (path.display(), time(seconds));
+    call.say(format_args!(
+        "wrote the page into {file}, {megabytes:.1} MB in {time}; it needs no server"
+    ));
+    Ok(Ending::Done)
 }

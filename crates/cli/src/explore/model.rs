@@ -26,7 +26,7 @@ pub fn model_description(_words: &[String]) -> Result<Value> {
         "states": [state("stress", "tau"), state("log_state_1", "ln psi_1"), state("log_state_2", "ln psi_2")],
         "parameters": [
             parameter("driving", "V_H", "Driving velocity", 10.0, [1e-3, 1e4], true),
-            parameter("stiffness", "K", "Stiffness", 0.14, [0.0, 0.6], false),
+            parameter("stiffness", "K", "Stiffness", 0.14, [1e-3, 0.6], false),
             parameter("healing_time", "R", "Healing time", 100.0, [10.0, 1000.0], true),
             parameter("residual_strength", "c", "Residual strength", 1e-3, [1e-4, 1e-2], true),
             parameter("direct_effect", "a", "Direct effect", 0.0349, [0.00349, 0.349], true),

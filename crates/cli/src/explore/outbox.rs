@@ -24,8 +24,10 @@ const PATIENCE: Duration = Duration::from_secs(60);
 const BETWEEN: Duration = Duration::from_millis(100);
 /// Rows of one answer; more are a slip of the pen, and no page draws them.
 pub const MOST_ROWS: usize = 200_000;
+/// Numbers that are kept for the picture of one answer: four points for each step.
+const MOST_DRAWN: usize = 16_000_000;
 /// Cells of the rows of one answer.
-pub const MOST_CELLS: usize = 4_000_000;
+pub const MOST_CELLS: usize = 2_000_000;
 
 /// Takes what a command yields.
 pub struct Outbox {
@@ -260,6 +262,18 @@ impl Outlet for Outbox {
         });
     }
 
+    fn draws(&self, numbers: usize) {
+        if numbers > MOST_DRAWN && !self.is_stopped() {
+            self.change(|kept| {
+                kept.exceeded = true;
+                if self.streams {
+                    kept.line(&json!({"say": too_many_rows()}));
+                }
+            });
+            self.stop.store(true, Ordering::Relaxed);
+        }
+    }
+
     fn special(&self, columns: &[String], rows: Vec<Vec<Cell>>) {
         if self.streams {
             let mut list = Vec::new();
@@ -345,7 +359,7 @@ impl Outlet for Outbox {
 /// The sentence on rows that are left out.
 pub fn too_many_rows() -> String {
     format!(
-        "stopped at {MOST_ROWS} rows or {MOST_CELLS} numbers, the most that one answer has; ask for fewer (`points`, `every`, `columns`)"
+        "stopped at {MOST_ROWS} rows or {MOST_CELLS} numbers, the most that one answer has; ask for a shorter run or fewer rows (`points`)"
     )
 }
 

@@ -83,6 +83,9 @@ impl Queue {
             let queue = Arc::clone(self);
             let own = Arc::clone(&outbox);
             let work = move || {
+                if kind == BACKGROUND {
+                    be_nice();
+                }
                 let ended = catch_unwind(AssertUnwindSafe(|| job(&own)));
                 if let Err(panic) = ended {
                     own.end(Err(Failure::of_panic(&*panic)));
@@ -136,4 +139,10 @@ impl Queue {
     pub fn changed(&self) {
         self.changed.notify_all();
     }
+}
+
+/// Gives this thread, and those that it begins, less of the processor than others have.
+fn be_nice() {
+    #[cfg(target_os = "linux")]
+    let _ = rustix::process::setpriority_process(None, 10);
 }

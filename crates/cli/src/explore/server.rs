@@ -4,11 +4,12 @@ use super::answer::{self, Answer};
 use super::outbox::{Outbox, Whole, object, too_many_rows};
 use super::queue::{MOST_WAITING, Queue};
 use super::request::{COMMANDS, words};
+use super::save::{BEGIN, begin_element, in_script, saved_page};
 use super::{assets, bundle, model};
 use crate::failure::Failure;
 use crate::{Ending, call::Outlet, run_into};
 use http_body_util::{BodyExt, Limited};
-use hyper::body::Incoming;
+use hyper::body::{Bytes, Incoming};
 use hyper::server::conn::http1;
 use hyper::service::service_fn;
 use hyper::{HeaderMap, Method, Request, StatusCode, header};
@@ -20,14 +21,15 @@ use std::sync::Arc;
 use std::task::Poll;
 use std::time::Duration;
 use tokio::net::TcpListener;
-use tokio::sync::Semaphore;
+use tokio::sync::{Mutex, Semaphore};
 use tokio::time::timeout;
-use twinslip::error::Error;
 
 /// Connections at once; more wait to be accepted.
 const MOST_CONNECTIONS: usize = 64;
 /// Bytes of the options of a request.
 const LONGEST: usize = 1 << 20;
+/// Bytes of a page that is saved.
+const LONGEST_PAGE: usize = 64 << 20;
 /// Bytes of the head of a request.
 const LONGEST_HEAD: usize = 16 << 10;
 /// Fields in the head of a request.
@@ -45,6 +47,8 @@ pub struct Server {
     pub begin: Value,
     /// Commands that run and wait.
     pub queue: Arc<Queue>,
+    /// Held while a page is saved.
+    pub saving: Mutex<()>,
 }
 
 /// Answers requests for ever.
@@ -125,6 +129,10 @@ impl Server {
                     false => not_allowed("POST"),
                 }
             }
+            (_, Some("save")) => match request.method() == Method::POST {
+                true => self.saved(request).await,
+                false => not_allowed("POST"),
+            },
             _ => refused(StatusCode::NOT_FOUND, "there is no such page"),
         }
     }
@@ -160,32 +168,14 @@ impl Server {
     }
 
     fn page(&self) -> String {
-        // The text stands in a script, which it must not end.
-        let begin = self.begin.to_string().replace('<', "\\u003c");
-        assets::index().replacen(
-            "id=\"begin\"></script>",
-            &format!("id=\"begin\">{begin}</script>"),
-            1,
-        )
+        let begin = in_script(&self.begin.to_string());
+        assets::index().replacen(BEGIN, &begin_element(&begin), 1)
     }
 
     /// A command, or the description of a model.
     async fn asked(&self, command: &str, request: Request<Incoming>) -> Answer {
         let heads = request.headers();
-        let is = |name, wanted: &str| {
-            let value = only(heads, name).unwrap_or_default();
-            value
-                .split(';')
-                .next()
-                .is_some_and(|kind| kind.trim().eq_ignore_ascii_case(wanted))
-        };
-        if !is(header::CONTENT_TYPE, "application/json") {
-            return refused(
-                StatusCode::UNSUPPORTED_MEDIA_TYPE,
-                "options come as application/json",
-            );
-        }
-        let streams = is(header::ACCEPT, "application/x-ndjson");
+        let streams = is(heads, header::ACCEPT, "application/x-ndjson");
         let behind =
             only(heads, header::HeaderName::from_static("priority")).is_some_and(is_background);
         let options = match options(request).await {
@@ -193,11 +183,12 @@ impl Server {
             Err(refused) => return refused,
         };
         let words = match command {
-            "model" => words("orbit", &options),
-            _ => words(command, &options),
+            // Its options are those of the model, which an orbit has too.
+            "model" => words("orbit", &options).map(|words| Work::Model(words)),
+            _ => words(command, &options).map(Work::Command),
         };
-        let words = match words {
-            Ok(words) => words,
+        let work = match words {
+            Ok(work) => work,
             Err(error) => {
                 let failure = Failure::of(&error);
                 return answer::json(StatusCode::BAD_REQUEST, &json!({"error": object(&failure)}));
@@ -207,14 +198,7 @@ impl Server {
             streams,
             behind.then(|| Arc::clone(&self.queue)),
         ));
-        let added = match command {
-            "model" => self
-                .queue
-                .add(Arc::clone(&outbox), move |outbox| describe(&words, outbox)),
-            _ => self
-                .queue
-                .add(Arc::clone(&outbox), move |outbox| run(&words, outbox)),
-        };
+        let added = begin(&self.queue, &outbox, work);
         if !added {
             let why = format!("{MOST_WAITING} commands wait already; ask again when some are done");
             return refused(StatusCode::SERVICE_UNAVAILABLE, why);
@@ -231,6 +215,36 @@ impl Server {
         let whole = whole.await;
         drop(lines);
         whole_answer(whole)
+    }
+}
+
+impl Server {
+    /// The page with what it shows, as a file.
+    async fn saved(&self, request: Request<Incoming>) -> Answer {
+        // Such a body is large: one at a time.
+        let Ok(_place) = self.saving.try_lock() else {
+            return refused(
+                StatusCode::SERVICE_UNAVAILABLE,
+                "another page is being saved; try again",
+            );
+        };
+        let content = match body(request, LONGEST_PAGE, 6 * PATIENCE).await {
+            Ok(content) => content,
+            Err(refused) => return refused,
+        };
+        let content = std::str::from_utf8(&content).unwrap_or_default();
+        match saved_page(&self.begin, content) {
+            Ok(page) => {
+                let mut answer = answer::whole(StatusCode::OK, "text/html; charset=utf-8", page);
+                let name =
+                    header::HeaderValue::from_static("attachment; filename=\"twinslip.html\"");
+                answer
+                    .headers_mut()
+                    .insert(header::CONTENT_DISPOSITION, name);
+                answer
+            }
+            Err(why) => refused(StatusCode::BAD_REQUEST, why),
+        }
     }
 }
 
@@ -267,53 +281,77 @@ fn same(given: &[u8], own: &[u8]) -> bool {
     given.len() == own.len() && std::hint::black_box(differences) == 0
 }
 
+/// Whether a field names this type.
+fn is(heads: &HeaderMap, name: header::HeaderName, wanted: &str) -> bool {
+    let value = only(heads, name).unwrap_or_default();
+    let kind = value.split(';').next().unwrap_or_default();
+    kind.trim().eq_ignore_ascii_case(wanted)
+}
+
+/// The body of a request, which is JSON of at most so many bytes.
+async fn body(
+    request: Request<Incoming>,
+    longest: usize,
+    patience: Duration,
+) -> Result<Bytes, Answer> {
+    if !is(request.headers(), header::CONTENT_TYPE, "application/json") {
+        return Err(refused(
+            StatusCode::UNSUPPORTED_MEDIA_TYPE,
+            "the body must be application/json",
+        ));
+    }
+    let body = Limited::new(request.into_body(), longest).collect();
+    match timeout(patience, body).await {
+        Ok(Ok(body)) => Ok(body.to_bytes()),
+        Ok(Err(error)) if error.is::<http_body_util::LengthLimitError>() => {
+            let why = format!("the body is longer than {longest} bytes");
+            Err(refused(StatusCode::PAYLOAD_TOO_LARGE, why))
+        }
+        Ok(Err(_)) => Err(refused(
+            StatusCode::BAD_REQUEST,
+            "the body did not come whole",
+        )),
+        Err(_) => Err(refused(
+            StatusCode::REQUEST_TIMEOUT,
+            "the body did not come in time",
+        )),
+    }
+}
+
 /// The options in the body of a request.
 async fn options(request: Request<Incoming>) -> Result<Map<String, Value>, Answer> {
-    let body = Limited::new(request.into_body(), LONGEST).collect();
-    let body = match timeout(PATIENCE, body).await {
-        Ok(Ok(body)) => body.to_bytes(),
-        Ok(Err(error)) if error.is::<http_body_util::LengthLimitError>() => {
-            let why = format!("options are longer than {LONGEST} bytes");
-            return Err(refused(StatusCode::PAYLOAD_TOO_LARGE, why));
-        }
-        Ok(Err(_)) => {
-            return Err(refused(
-                StatusCode::BAD_REQUEST,
-                "the options did not come whole",
-            ));
-        }
-        Err(_) => {
-            return Err(refused(
-                StatusCode::REQUEST_TIMEOUT,
-                "the options did not come in time",
-            ));
-        }
-    };
-    let wrong = |why: String| refused(StatusCode::BAD_REQUEST, why);
+    let body = body(request, LONGEST, PATIENCE).await?;
     let text = match body.is_empty() {
         true => b"{}",
         false => &body[..],
     };
     // It goes no deeper than 128 levels.
-    serde_json::from_slice(text)
-        .map_err(|error| wrong(format!("the options are no JSON object: {error}")))
+    serde_json::from_slice(text).map_err(|error| {
+        let why = format!("the options are no JSON object: {error}");
+        refused(StatusCode::BAD_REQUEST, why)
+    })
 }
 
-fn run(words: &[String], outbox: &Arc<Outbox>) {
-    let ended = run_into(words, Arc::<Outbox>::clone(outbox));
-    outbox.end(ended.map_err(|error| Failure::of(&error)));
+/// What a request asks for, as the words of a command line.
+pub enum Work {
+    /// A command.
+    Command(Vec<String>),
+    /// The description of the model that its options make.
+    Model(Vec<String>),
 }
 
-fn describe(words: &[String], outbox: &Arc<Outbox>) {
-    let described = model::model_description(words);
-    if let Ok(model) = &described {
-        outbox.object(model.to_string().as_bytes());
-    }
-    outbox.end(
-        described
-            .map(|_| Ending::Done)
-            .map_err(|error: Error| Failure::of(&error)),
-    );
+/// Runs it as soon as there is a place; false if too many wait.
+pub fn begin(queue: &Arc<Queue>, outbox: &Arc<Outbox>, work: Work) -> bool {
+    queue.add(Arc::clone(outbox), move |outbox| {
+        let ended = match &work {
+            Work::Command(words) => run_into(words, Arc::<Outbox>::clone(outbox)),
+            Work::Model(words) => model::model_description(words).map(|model| {
+                outbox.object(model.to_string().as_bytes());
+                Ending::Done
+            }),
+        };
+        outbox.end(ended.map_err(|error| Failure::of(&error)));
+    })
 }
 
 /// The answer to who asked for an object alone.

@@ -66,7 +66,9 @@ pub fn plain<S: AsRef<str>>(words: &[S]) -> Result<Plain, String> {
         with_unit: None,
         without_unit: Vec::new(),
     };
-    let Some(command) = words.get(1).filter(|word| Command::has_subcommand(word)) else {
+    // The page of `explore` begins with options of the model.
+    let has_options = |word: &&&str| Command::has_subcommand(word) || **word == "explore";
+    let Some(command) = words.get(1).filter(has_options) else {
         return Ok(line);
     };
     let context = Context::of(command, &words);
