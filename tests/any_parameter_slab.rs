@@ -308,6 +308,52 @@ fn the_damping_varies_in_pascal_seconds_per_metre() {
     }
 }
 
+/// The stress of the equilibria at one value of the parameter, ascending.
+fn stresses_at(command: &str, value: &str) -> Vec<f64> {
+    let made = object(&format!("{command} --at {value}"));
+    let rows = made["result"]["rows"].as_array().expect("rows");
+    let landed = rows.iter().filter(|row| row["label"] == "UZ");
+    let mut all: Vec<f64> = landed.map(|row| number(row, "/stress")).collect();
+    all.sort_by(f64::total_cmp);
+    all
+}
+
+/// Formulas are freed of what they have no value of: radiation damping, and the constant of one interface.
+#[test]
+fn the_formulas_of_a_law_vary_as_the_law_that_is_built_in() {
+    for (along, value) in [
+        ("damping=1e-4:1", "1e-2"),
+        ("residual_strength_2=2e-3:3e-3", "2.5e-3"),
+    ] {
+        let branch = format!("branch equilibria --driving 10 --stiffness 0.14 --along {along}");
+        let built_in = stresses_at(&branch, value);
+        let formulas = stresses_at(&format!("{branch} --law scenes/laws/spinodal.toml"), value);
+        assert!(!built_in.is_empty());
+        assert_eq!(built_in.len(), formulas.len(), "{along}");
+        for (one, other) in built_in.iter().zip(&formulas) {
+            assert!((one / other - 1.0).abs() < 1e-9, "{along}: {one} {other}");
+        }
+    }
+}
+
+#[test]
+fn a_constant_of_one_of_three_interfaces_varies_though_none_is_given() {
+    let branch = "branch equilibria --interfaces 3 --driving 10 --stiffness 0.14";
+    let along = format!("{branch} --along residual_strength_3=2e-3:3e-3");
+    let here = stresses_at(&along, "2.5e-3");
+    let given = stresses_at(
+        &format!("{branch} --set residual_strength_3=2.5e-3 --along healing_time=90:110"),
+        "100",
+    );
+    assert!(!here.is_empty());
+    assert_eq!(here.len(), given.len());
+    for (one, other) in here.iter().zip(&given) {
+        assert!((one / other - 1.0).abs() < 1e-9, "{one} {other}");
+    }
+    let made = object(&format!("{branch} --along damping=1e-3:1e-2"));
+    assert_eq!(made["model"]["parameters"]["damping"], Value::Null);
+}
+
 #[test]
 fn what_interfaces_do_not_have_is_refused_in_one_sentence() {
     let branch = "branch equilibria --driving 10 --stiffness 0.14";

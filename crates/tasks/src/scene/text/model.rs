@@ -1,7 +1,7 @@
 //! A user-defined system with what the command line says about it.
 
 use super::file::{SystemFile, TIME, TimeUse};
-use super::law_file::{DRIVING, LawFile, SCALES, STIFFNESS};
+use super::law_file::{DAMPING, DRIVING, LawFile, SCALES, STIFFNESS};
 use super::options::TextOptions;
 use super::slab::TextSlab;
 use crate::scene::file::read_bounded;
@@ -65,14 +65,19 @@ impl TextModel {
         for name in free.iter().filter(|name| SCALES.contains(name)) {
             echo.insert((*name).to_owned(), Value::Null);
         }
-        Ok(Some(TextModel {
+        let mut model = TextModel {
             echo,
             time: None,
             start: Vec::new(),
             units: slab.units,
             slab: Some(slab),
             system,
-        }))
+        };
+        // So is that of damping, which a law has that has none.
+        if free.contains(&DAMPING) {
+            model.vary(DAMPING);
+        }
+        Ok(Some(model))
     }
 
     /// This model, of a command that knows no units of clusters.

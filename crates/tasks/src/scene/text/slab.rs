@@ -45,7 +45,7 @@ impl TextSlab {
         let counts = counts(&options.slab)?;
         let interfaces = counts.len();
         let units = units(&law, &options.slab)?;
-        let law = damped(law, options, &units)?;
+        let law = damped(law, options, (&units, free))?;
         let law = match unit_of_stress(&options.slab, &units, free)? {
             Some(unit) => {
                 let named = AnyLaw::named(&options.slab.law, Parameters::heslot_1994())?;
@@ -54,7 +54,7 @@ impl TextSlab {
             None => law,
         };
         let mut loading = [options.driving, options.stiffness];
-        let own = parameters(&law, options, (interfaces, &units), &mut loading)?;
+        let own = parameters(&law, options, (interfaces, &units, free), &mut loading)?;
         for (name, value) in ["driving", "stiffness"].into_iter().zip(&mut loading) {
             let allows_rest = name == "driving" && *value == Some(0.0) && free.contains(&name);
             if let Some(value) = value.as_mut().filter(|_| !allows_rest) {

@@ -15,10 +15,13 @@ pub(super) struct Own {
     pub differs: bool,
 }
 
-/// How many interfaces there are in each cluster: one, where the options say nothing of clusters. All steady states of as many are found by
-/// bisection, whose work grows exponentially with their number.
+/// Interfaces, or clusters of them, that move on their own by formulas: all steady states of as many are found by bisection, whose work grows
+/// exponentially with their number.
+pub(in crate::scene) const MOST_APART: usize = 7;
+
+/// How many interfaces there are in each cluster: one, where the options say nothing of clusters.
 pub(super) fn counts(options: &SlabOptions) -> Result<Vec<usize>> {
-    const MOST: usize = 7;
+    const MOST: usize = MOST_APART;
     let interfaces = options.count();
     let Some(text) = &options.clusters else {
         return match interfaces {
@@ -121,8 +124,13 @@ fn differ_in_units(slab: &SlabOptions, free: &[&str]) -> Result<bool> {
     }))
 }
 
-/// The law with the radiation damping that the options give it, where it has no parameter of that name itself.
-pub(super) fn damped(law: LawFile, options: &ModelOptions, units: &Units) -> Result<LawFile> {
+/// The law with the radiation damping that the options give it, where it has no parameter of that name itself. Where that is free it has any
+/// value, which is set before it counts.
+pub(super) fn damped(
+    law: LawFile,
+    options: &ModelOptions,
+    (units, free): (&Units, &[&str]),
+) -> Result<LawFile> {
     if law.place(DAMPING).is_some() {
         return Ok(law);
     }
@@ -133,16 +141,18 @@ pub(super) fn damped(law: LawFile, options: &ModelOptions, units: &Units) -> Res
         ..options.slab.clone()
     };
     match damping(&given)? {
+        0.0 if free.contains(&DAMPING) => law.damped(1.0),
         0.0 => Ok(law),
         eta => law.damped(units.inward(Quantity::Damping, eta)),
     }
 }
 
-/// The parameters of the law, with what the options and `--set` say; V_H and K go to `loading`.
+/// The parameters of the law, with what the options and `--set` say; V_H and K go to `loading`. One that is free for an interface alone is that
+/// of each.
 pub(super) fn parameters(
     law: &LawFile,
     options: &ModelOptions,
-    (interfaces, units): (usize, &Units),
+    (interfaces, units, free): (usize, &Units, &[&str]),
     loading: &mut [Option<f64>; 2],
 ) -> Result<Vec<Own>> {
     let inward = |name: &str, value| units.inward(Quantity::of_parameter(name), value);
@@ -192,7 +202,23 @@ pub(super) fn parameters(
             _ => put(&mut own, name, inward(name, value), interfaces)?,
         }
     }
+    for name in free {
+        if own.iter().all(|own| own.name != *name)
+            && let Some((own, _)) = of_one(&mut own, name, interfaces)
+        {
+            own.differs = true;
+        }
+    }
     Ok(own)
+}
+
+/// The parameter that a name with an index is of, and the interface.
+fn of_one<'o>(own: &'o mut [Own], name: &str, interfaces: usize) -> Option<(&'o mut Own, usize)> {
+    let (stem, number) = name.rsplit_once('_')?;
+    let i = number.parse::<usize>().ok()?;
+    let there = interfaces > 1 && (1..=interfaces).contains(&i);
+    let own = own.iter_mut().find(|own| own.name == stem);
+    own.filter(|_| there).map(|own| (own, i - 1))
 }
 
 /// Another value of a parameter of all interfaces, or of one.
@@ -201,13 +227,7 @@ fn put(own: &mut [Own], name: &str, value: f64, interfaces: usize) -> Result<()>
         own.values.fill(value);
         return Ok(());
     }
-    let numbered = name.rsplit_once('_').and_then(|(stem, number)| {
-        let i = number.parse::<usize>().ok()?;
-        (interfaces > 1 && (1..=interfaces).contains(&i)).then_some((stem, i - 1))
-    });
-    if let Some((stem, i)) = numbered
-        && let Some(own) = own.iter_mut().find(|own| own.name == stem)
-    {
+    if let Some((own, i)) = of_one(own, name, interfaces) {
         own.values[i] = value;
         own.differs = true;
         return Ok(());
