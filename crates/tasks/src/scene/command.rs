@@ -4,7 +4,8 @@ use super::continuation::{BranchOptions, LocusOptions};
 use super::file::SceneFile;
 use super::fit::FitOptions;
 use super::options::{
-    EquilibriaOptions, IntegrateOptions, LawOptions, OrbitOptions, SectionOptions, SlabOptions,
+    EquilibriaOptions, IntegrateOptions, LawOptions, ModelOptions, OrbitOptions, SectionOptions,
+    SlabOptions,
 };
 use super::sweep::SweepOptions;
 use super::system::{System, damping};
@@ -118,6 +119,26 @@ impl Command {
         };
         parsed.map_err(|error| sentence(&error))
     }
+}
+
+/// The options of a model, from words of a command line without a command.
+///
+/// # Errors
+/// What is wrong with them as one sentence.
+pub(super) fn model_options(words: &[String]) -> Result<ModelOptions, String> {
+    let line = |command: &str| {
+        let begin = ["twinslip", command].map(str::to_owned);
+        begin
+            .into_iter()
+            .chain(words.iter().cloned())
+            .collect::<Vec<String>>()
+    };
+    // Every command reads those of its model alike.
+    let words = line("orbit");
+    let mut words = plain(&words)?.applied(&words);
+    words[1] = "model".to_owned();
+    let options = options(&words).map_err(|error| sentence(&error))?;
+    Ok(*options)
 }
 
 /// The options of one command, from a command line whose second word is its name.

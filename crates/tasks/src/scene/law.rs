@@ -121,11 +121,7 @@ impl LawPlan {
     /// # Errors
     /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
     pub fn new(options: &LawOptions) -> Result<Self> {
-        let formulas = TextModel::of(&options.model, &["driving", "stiffness"])?;
-        let laws = match formulas.filter(|model| model.slab.is_some()) {
-            Some(model) => Laws::Formulas(Box::new(model)),
-            None => Laws::Closed(Box::new(System::new(&options.model)?)),
-        };
+        let laws = Laws::of(&options.model)?;
         let units = *laws.described().units();
         Ok(LawPlan {
             slip_rates: slip_rates(options, &units)?,
@@ -181,6 +177,22 @@ impl LawPlan {
 }
 
 impl Laws {
+    fn of(model: &ModelOptions) -> Result<Self> {
+        let formulas = TextModel::of(model, &["driving", "stiffness"])?;
+        Ok(match formulas.filter(|model| model.slab.is_some()) {
+            Some(model) => Laws::Formulas(Box::new(model)),
+            None => Laws::Closed(Box::new(System::new(model)?)),
+        })
+    }
+
+    /// How many interfaces may differ.
+    fn interfaces(&self) -> usize {
+        match self {
+            Laws::Closed(_) => self.count(),
+            Laws::Formulas(model) => model.slab.as_ref().map_or(1, |slab| slab.clusters().len()),
+        }
+    }
+
     fn described(&self) -> &dyn Described {
         match self {
             Laws::Closed(system) => &**system,
@@ -234,6 +246,30 @@ fn curve(
         },
         coefficient: Some(coefficient),
     })
+}
+
+/// The largest critical stiffness of interfaces at these slip rates, of those that differ of any; `None` where it is nowhere positive, or
+/// where the law has no steady state. All that varies in the laws is given.
+pub(super) fn largest_critical_stiffness(model: &ModelOptions, rates: &[f64]) -> Option<f64> {
+    let mut model = model.clone();
+    let slab = &mut model.slab;
+    if slab.law_file().is_none() && slab.sets_one_interface() == Ok(false) {
+        // Of equal interfaces the law is the same however many there are, and of two it has closed forms.
+        (slab.interfaces, slab.clusters) = (None, None);
+    }
+    let laws = Laws::of(&model).ok()?;
+    let each = (0..laws.interfaces()).map(|i| match &laws {
+        Laws::Closed(system) => curve(system, i, (rates, None)),
+        Laws::Formulas(model) => curve_of_formulas(model, i, (rates, None)).map(|(curve, _)| curve),
+    });
+    let largest = each.flatten().flat_map(|curve| {
+        let maximum = curve.landmarks.critical_stiffness_maximum;
+        let points = curve.points.into_iter().map(|at| at.critical_stiffness);
+        points.chain(maximum.map(|at| at.stiffness.value))
+    });
+    largest
+        .filter(|k| *k > 0.0 && k.is_finite())
+        .max_by(f64::total_cmp)
 }
 
 /// The slip rates of the grid, ascending, in V*.

@@ -105,6 +105,35 @@ impl CurveChoice {
         self.orbits
     }
 
+    /// The names of those that a system of so many variables may have: with folds of equilibria where it has more than one, and with a
+    /// symmetry that equilibria and orbits may break. In the plane orbits have no period doublings, and tori need three variables.
+    pub(super) fn of_system(
+        variables: usize,
+        folds: bool,
+        [broken, broken_by_orbits]: [bool; 2],
+    ) -> Vec<&'static str> {
+        let occurs = |curve: &&CurveChoice| match curve.kind {
+            LocusKind::Pitchfork => broken,
+            LocusKind::OrbitPitchfork => broken_by_orbits,
+            LocusKind::SaddleNode => folds,
+            LocusKind::Hopf | LocusKind::OrbitSaddleNode => variables > 1,
+            LocusKind::PeriodDoubling | LocusKind::Torus => variables > 2,
+        };
+        CURVES
+            .iter()
+            .filter(occurs)
+            .map(|curve| curve.name)
+            .collect()
+    }
+
+    /// The names of those of equilibria, with pitchforks where there is a symmetry that they break.
+    pub(super) fn of_equilibria(broken: bool) -> Vec<&'static str> {
+        let all = CURVES.iter().filter(|curve| !curve.orbits);
+        all.filter(|curve| broken || curve.kind != LocusKind::Pitchfork)
+            .map(|curve| curve.name)
+            .collect()
+    }
+
     /// The curve of this name.
     ///
     /// # Errors

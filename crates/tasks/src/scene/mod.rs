@@ -30,6 +30,7 @@ mod branch;
 mod column;
 mod command;
 mod continuation;
+mod description;
 mod ensemble;
 mod equations;
 mod equilibria;
@@ -70,6 +71,10 @@ pub use column::{CellValue, Column};
 pub use command::Command;
 pub use command::sentence;
 pub use continuation::{BranchOptions, ContinuationOptions, LocusOptions, SearchOptions};
+pub use description::{
+    LawDescription, ModelDescription, ModelKind, ParameterDescription, StateDescription,
+    symbol_of_state,
+};
 pub use ensemble::{EnsembleFile, EnsembleOptions, EnsemblePlan, FittedParameter, FrictionFit};
 pub use equations::Subspace;
 pub use equilibria::{ClassifiedEquilibria, ClassifiedEquilibrium, EquilibriaPlan};

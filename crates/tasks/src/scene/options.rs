@@ -94,10 +94,10 @@ pub struct SlabOptions {
     /// All input and output in SI units; implied by a value with a unit, such as 10um, 50MPa, 1nm/s or 500year
     #[arg(long, help_heading = "SI units")]
     pub si: bool,
-    /// With --si: L in m [default: 0.9e-6]
+    /// With --si: slip length L in m [default: 0.9e-6]
     #[arg(long, help_heading = "SI units", value_name = "L", requires = "si", value_parser = number, allow_negative_numbers = true)]
     pub slip_length: Option<f64>,
-    /// With --si: sigma in Pa; it only scales stress and stiffness, and the paper gives none [default: 1e6]
+    /// With --si: normal stress sigma in Pa; it only scales stress and stiffness, and the paper gives none [default: 1e6]
     #[arg(long, help_heading = "SI units", value_name = "sigma", requires = "si", value_parser = number, allow_negative_numbers = true)]
     pub normal_stress: Option<f64>,
     /// With --si: V* in m/s [default: 1e-6]

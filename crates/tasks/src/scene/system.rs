@@ -145,6 +145,21 @@ impl System {
     /// # Errors
     /// As [`System::new`]; [`Error::Input`] for more than two that differ.
     pub(super) fn several(options: &ModelOptions) -> Result<Self> {
+        let interfaces = options.slab.count() as usize;
+        if options.slab.clusters.is_none() && !(1..=MOST_INTERFACES).contains(&interfaces) {
+            let must = format!(
+                "between 1 and {MOST_INTERFACES}: the number of partitions of more interfaces is beyond the range of doubles"
+            );
+            return Err(Error::parameter("interfaces", interfaces, must));
+        }
+        Self::of_many(options)
+    }
+
+    /// The same of so many that not all their steady states can be found.
+    ///
+    /// # Errors
+    /// As of [`System::several`], but for their number.
+    pub(super) fn of_many(options: &ModelOptions) -> Result<Self> {
         let options = options.resolved()?;
         let (slab, interfaces) = (&options.slab, options.slab.count() as usize);
         if slab.clusters.is_some() {
@@ -152,12 +167,6 @@ impl System {
                 "`clusters`: the steady states of all clusters are found without it; leave it out"
                     .into(),
             ));
-        }
-        if !(1..=MOST_INTERFACES).contains(&interfaces) {
-            let must = format!(
-                "between 1 and {MOST_INTERFACES}: the number of partitions of more interfaces is beyond the range of doubles"
-            );
-            return Err(Error::parameter("interfaces", interfaces, must));
         }
         if interfaces > 2 && slab.law_file().is_some() {
             return Err(Error::Input(format!(

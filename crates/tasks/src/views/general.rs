@@ -4,6 +4,7 @@ use super::diagram::{axis_label, symmetry_colour, symmetry_name, value};
 use super::labels::{colour_name, distinct, meanings_of, named_strokes, with_hopf_points};
 use crate::scene::{
     Free, GeneralBranchPlan, GeneralLocusPlan, GeneralRow, Quantity, RowKind, Subject, Units,
+    symbol_of_state,
 };
 use twinslip::bifurcation::Label;
 use twinslip::equilibrium::{Symmetry, Verdict};
@@ -68,18 +69,7 @@ fn symbol_of(name: &str, subject: &dyn Subject) -> String {
     if !slides(subject) {
         return name.to_owned();
     }
-    if name == "stress" {
-        return "stress τ".to_owned();
-    }
-    let symbols = [("log_state_", "ln ψ"), ("state_", "ψ"), ("slip_rate_", "v")];
-    let numbered = symbols.into_iter().find_map(|(prefix, symbol)| {
-        let number = name.strip_prefix(prefix)?;
-        number.parse::<usize>().ok().map(|n| (symbol, n))
-    });
-    match numbered {
-        Some((symbol, number)) => format!("{symbol}_{number}"),
-        None => symbol(name).to_owned(),
-    }
+    symbol_of_state(name).unwrap_or_else(|| symbol(name).to_owned())
 }
 
 /// What is drawn, and at which values of what every row tells though it is held, or else of all parameters.

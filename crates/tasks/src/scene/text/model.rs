@@ -354,17 +354,25 @@ fn called(path: &Path) -> String {
     }
 }
 
-/// The file, or where there is none of that name the system that is built in; or the text itself.
+/// The system of a file, of the one that is built in, or of the text itself.
 fn read(path: &Path) -> Result<SystemFile> {
+    parsed(&called(path), &system_text(path)?)
+}
+
+/// The text of a system: what the file holds, or where there is none of that name the system that is built in; or the text itself.
+///
+/// # Errors
+/// [`Error::File`] for a file that can't be read; [`Error::Input`] for a name that is neither, and for a text that is too long.
+pub(in crate::scene) fn system_text(path: &Path) -> Result<Cow<'_, str>> {
     let name = called(path);
     if let Some(text) = given_text(path) {
-        return parsed(&name, bounded(&name, text)?);
+        return Ok(bounded(&name, text)?.into());
     }
     if path.exists() {
-        return parsed(&name, &read_bounded(path, LONGEST)?);
+        return Ok(read_bounded(path, LONGEST)?.into());
     }
     if let Some(text) = shipped_system(path) {
-        return parsed(&name, text);
+        return Ok(text.into());
     }
     let known = shipped_system_names();
     let hint = did_you_mean(&name, known.iter().copied());
@@ -403,15 +411,29 @@ fn built_in_law(name: &str) -> Result<LawFile> {
     )
 }
 
-/// The file of a law, or where there is none of that name the one that the program carries; or the text itself.
-pub(super) fn read_law(path: &Path) -> Result<LawFile> {
-    if let Some(text) = given_text(path) {
-        const NAME: &str = "the law";
-        return LawFile::parse(NAME, bounded(NAME, text)?);
+/// What messages call the file of a law, or its text.
+fn law_called(path: &Path) -> String {
+    match given_text(path) {
+        Some(_) => "the law".into(),
+        None => path.display().to_string(),
     }
-    let name = path.display().to_string();
+}
+
+/// The law of a file, of the one that the program carries, or of the text itself.
+pub(super) fn read_law(path: &Path) -> Result<LawFile> {
+    LawFile::parse(&law_called(path), &law_text(path)?)
+}
+
+/// The text of a law: what the file holds, or where there is none of that name the one that the program carries; or the text itself.
+///
+/// # Errors
+/// As of [`system_text`].
+pub(in crate::scene) fn law_text(path: &Path) -> Result<Cow<'_, str>> {
+    if let Some(text) = given_text(path) {
+        return Ok(bounded(&law_called(path), text)?.into());
+    }
     match shipped_law(path) {
-        Some(text) if !path.exists() => LawFile::parse(&name, text),
-        _ => LawFile::parse(&name, &read_bounded(path, LONGEST)?),
+        Some(text) if !path.exists() => Ok(text.into()),
+        _ => Ok(read_bounded(path, LONGEST)?.into()),
     }
 }

@@ -9,6 +9,7 @@ mod symbols;
 mod unit;
 
 pub(super) use merge::merged;
+pub(super) use symbols::{indexed, symbol};
 pub(super) use unit::{Kind, with_unit};
 
 use super::command::Command;

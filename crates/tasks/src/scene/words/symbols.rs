@@ -5,7 +5,7 @@ use super::unit::Kind;
 /// The parameter that V* is, which is an option and not a parameter of the model.
 pub(super) const REFERENCE_RATE: &str = "reference_rate";
 
-/// Symbols and the names of their parameters.
+/// Symbols and the names of their parameters; of several symbols of one parameter the last is that of the paper and of the help.
 const SYMBOLS: [(&str, &str); 16] = [
     ("a", "direct_effect"),
     ("b", "evolution_effect"),
@@ -38,7 +38,7 @@ fn found(all: &[(&'static str, &'static str)], known: &str) -> Option<&'static s
 }
 
 /// The name without the index of an interface, and the index with its line.
-fn indexed(name: &str) -> (&str, &str) {
+pub(in crate::scene) fn indexed(name: &str) -> (&str, &str) {
     let digits = name.trim_end_matches(|c: char| c.is_ascii_digit());
     match digits.strip_suffix('_') {
         Some(base) if digits.len() < name.len() => (base, &name[base.len()..]),
@@ -52,6 +52,13 @@ pub(super) fn parameter(symbol: &str) -> String {
     let name = found(&SYMBOLS, symbol).map(str::to_owned);
     name.or_else(|| Some(format!("{}{index}", found(&SYMBOLS, base)?)))
         .unwrap_or_else(|| symbol.to_owned())
+}
+
+/// The symbol of a parameter, with the index of an interface; the name itself where it has none.
+pub(in crate::scene) fn symbol(name: &str) -> String {
+    let (base, index) = indexed(name);
+    let pair = SYMBOLS.iter().rfind(|(_, known)| *known == base);
+    pair.map_or_else(|| name.to_owned(), |(symbol, _)| format!("{symbol}{index}"))
 }
 
 /// The law of this name, or the same.
