@@ -1,10 +1,27 @@
-/** @file The page begins here. */
+// Where the page begins: in a browser that a server or a file has sent it to, or as the widget of a notebook.
 
-/** Shows that the server is there. */
-export function begin() {
-  document.body.append("twinslip explore");
+import { App } from "./app.js";
+import { Engine, HttpTransport, RecordedTransport, WidgetTransport } from "./engine.js";
+import { readGlossary } from "./glossary.js";
+
+/** Shows the page in an element; `begin` says what with. */
+export function show(root, transport, begin) {
+  readGlossary(begin.glossary);
+  const app = new App(root, new Engine(transport), begin);
+  app.start();
+  return app;
 }
 
-if (globalThis.document?.getElementById("begin")) {
-  begin();
+/** The widget of a notebook, as anywidget has it. */
+export function render({ model, el }) {
+  const begin = JSON.parse(model.get("begin"));
+  const app = show(el, new WidgetTransport(model), { ...begin, inNotebook: true });
+  return () => app.engine.stopWhere(() => true);
+}
+
+const told = globalThis.document?.getElementById("begin");
+if (told) {
+  const begin = JSON.parse(told.textContent || "{}");
+  const transport = begin.saved ? new RecordedTransport(begin.saved.recording) : new HttpTransport("./");
+  globalThis.twinslip = show(document.body, transport, { ...begin, address: window.location.hash });
 }

@@ -1,0 +1,542 @@
+// The page as a whole: the scene, its panes, and what is asked when the scene changes.
+
+import { BranchPane } from "./branches.js";
+import { DiagramPane } from "./diagram.js";
+import { ParametersPane } from "./parameters.js";
+import { BandsPane } from "./bands.js";
+import { PortraitPane, ReturnsPane, RunPane } from "./runs.js";
+import { SpectrumPane } from "./spectrum.js";
+import { VerdictPane } from "./verdict.js";
+import { frameOf } from "./frame.js";
+import { download } from "./out.js";
+import { rangeAround } from "./panels.js";
+import { requests } from "./requests.js";
+import { fromAddress, History, parameterOf, rangeOf, sceneOf, toAddress, valuesAt, withAxes, withTold, withValue } from "./scene.js";
+
+/** After so many milliseconds without a move, what takes longer is asked too. */
+const SETTLED = 180;
+/** An answer amid a drag that takes longer is given up for a newer one. */
+const OVERDUE = 400;
+/** The run does not wait longer for the period of the orbit. */
+const PATIENCE = 20;
+/** Returns of the map, and those before. */
+const RETURNS = { returns: 600, skip: 400 };
+/** Cells of a map of regimes along each axis. */
+const CELLS = 24;
+/** Curves that take least come first. */
+const QUICK = ["pitchfork", "saddle-node", "hopf", "period-doubling", "orbit-pitchfork", "torus", "orbit-saddle-node"];
+
+/** The panes of one point. */
+class PointPanes {
+  constructor(app, index) {
+    this.verdict = new VerdictPane(app, index);
+    this.run = new RunPane(app, index);
+    this.portrait = new PortraitPane(app, index);
+    this.returns = new ReturnsPane(app, index);
+    this.spectrum = new SpectrumPane(app, index);
+    this.all = [this.verdict, this.run, this.portrait, this.returns, this.spectrum];
+  }
+}
+
+export class App {
+  constructor(root, engine, begin) {
+    Object.assign(this, { root, engine, begin });
+    this.systems = begin.systems ?? [];
+    this.example = begin.example ?? "";
+    this.frame = frameOf(this);
+    root.append(this.frame.element);
+    engine.onChange((slots) => this.busy(slots));
+  }
+
+  /** Reads the model and shows the first point. */
+  async start() {
+    const saved = this.begin.saved ?? null;
+    const scene = saved?.state ?? fromAddress(this.begin.address ?? "") ?? null;
+    const given = scene?.given ?? this.begin.options ?? {};
+    const model = await this.readModel(given);
+    if (!model) return;
+    this.model = model;
+    this.scene = scene && this.fits(scene, model) ? scene : withTold(sceneOf(model, given), model, this.begin.scene);
+    this.history = new History(this.scene);
+    this.build();
+    this.recompute({ settled: true, curves: true });
+  }
+
+  /** Whether the parameters of a scene are those of the model. */
+  fits(scene, model) {
+    const names = [scene.axes.x, scene.axes.y, ...Object.keys(scene.values)].filter(Boolean);
+    return names.every((name) => parameterOf(model, name)) && scene.points.every((point) => scene.axes.x in point);
+  }
+
+  async readModel(given) {
+    const answer = await this.engine.ask("model", "model", requests.modelOptions({ given }));
+    if (!answer) return null;
+    if (answer.error) {
+      this.say(answer.error.message, true);
+      return null;
+    }
+    return answer.object;
+  }
+
+  build() {
+    this.diagram = new DiagramPane(this);
+    this.alongs = { x: new BranchPane(this, "x"), y: new BranchPane(this, "y") };
+    this.side = new ParametersPane(this);
+    this.bands = new BandsPane(this);
+    this.points = [0, 1].map((index) => new PointPanes(this, index));
+    this.frame.fill(this);
+    this.side.rebuild();
+    for (const pane of Object.values(this.alongs)) pane.clear();
+    this.show();
+  }
+
+  get allPanes() {
+    return [this.diagram, this.alongs.x, this.alongs.y, this.bands, ...this.points.flatMap((point) => point.all)];
+  }
+
+  /** Lays out what the scene shows. */
+  show() {
+    const { scene, model } = this;
+    this.frame.layout(this);
+    document.documentElement.dataset.theme = scene.theme;
+    this.diagram.element.hidden = !scene.axes.y;
+    this.alongs.y.element.hidden = !scene.axes.y;
+    this.bands.element.hidden = !scene.fit;
+    this.frame.title.textContent = model.title;
+    this.side.refresh();
+    this.frame.refresh(this);
+  }
+
+  // What changes the scene.
+
+  /** Another scene of the same system: shown and computed; it can be undone if it is committed. */
+  setScene(scene, { commit = true, curves = true } = {}) {
+    this.scene = scene;
+    if (commit) {
+      this.history.commit(scene);
+      this.remember();
+    }
+    this.show();
+    this.recompute({ settled: commit, curves });
+  }
+
+  change(parts) {
+    this.setScene({ ...this.scene, ...parts });
+  }
+
+  remember() {
+    if (!this.engine.answers || this.begin.inNotebook) return;
+    window.history.replaceState(null, "", toAddress(this.scene));
+  }
+
+  movePoint(index, at, done) {
+    let { scene } = this;
+    if (at) {
+      const { x, y } = scene.axes;
+      const place = { [x]: this.kept(x, at.x), ...(y && { [y]: this.kept(y, at.y) }) };
+      const points = scene.points.map((point, i) => (i === index ? { ...point, ...place } : point));
+      scene = { ...scene, points, active: index };
+    }
+    this.moved = performance.now();
+    if (done) return this.setScene(scene, { curves: false });
+    return this.dragged(scene);
+  }
+
+  /** The scene amid a drag: shown in the next frame, and asked as soon as the answer before has come. */
+  dragged(scene) {
+    this.scene = scene;
+    this.nextFrame ??= requestAnimationFrame(() => {
+      this.nextFrame = null;
+      this.diagram.drawPoints();
+      this.side.refresh();
+      this.askDragged();
+    });
+  }
+
+  askDragged() {
+    const now = performance.now();
+    // Answers that were stopped by each new position would never come.
+    if (this.asked && now - this.asked < OVERDUE) {
+      this.again = true;
+      return;
+    }
+    this.asked = now;
+    this.again = false;
+    this.recompute({ settled: false, curves: false });
+  }
+
+  /** A value from a picture: few digits, and positive where it must be. */
+  kept(name, value) {
+    const one = parameterOf(this.model, name);
+    const [lo, hi] = rangeOf(this.scene, this.model, name);
+    const digits = one.log ? 5 : Math.max(5, Math.ceil(Math.log10(Math.max(Math.abs(lo), Math.abs(hi)) / (hi - lo))) + 5);
+    const kept = Number(value.toPrecision(Math.min(digits, 15)));
+    return one.positive && !(kept > 0) ? Math.max(lo, Number.MIN_VALUE) : kept;
+  }
+
+  setValue(name, value, done = true) {
+    const onAxis = name === this.scene.axes.x || name === this.scene.axes.y;
+    const scene = withValue(this.scene, name, value);
+    if (done) return this.setScene(scene, { curves: !onAxis });
+    this.moved = performance.now();
+    return this.dragged(scene);
+  }
+
+  setAxis(which, name) {
+    const axes = { ...this.scene.axes, [which]: name };
+    const other = which === "x" ? "y" : "x";
+    if (axes[other] === name) axes[other] = this.scene.axes[which];
+    this.setScene(withAxes(this.scene, this.model, axes));
+  }
+
+  setRanges(x, y) {
+    const ranges = { ...this.scene.ranges };
+    const digits = (pair) => pair.map((value) => Number(value.toPrecision(5)));
+    for (const [name, pair] of [[this.scene.axes.x, x], [this.scene.axes.y, y]]) {
+      if (!pair) delete ranges[name];
+      else if (pair[1] > pair[0] && (!parameterOf(this.model, name).positive || pair[1] > 0)) {
+        const [lo, hi] = digits(pair);
+        ranges[name] = parameterOf(this.model, name).positive && lo <= 0 ? [0, hi] : [lo, hi];
+      }
+    }
+    this.scene = { ...this.scene, ranges };
+    this.diagram.compose();
+    clearTimeout(this.zoomed);
+    this.zoomed = setTimeout(() => this.setScene(this.scene), 350);
+  }
+
+  setPortrait(names) {
+    this.change({ portrait: names.length >= 2 ? names : null });
+    for (const point of this.points) point.portrait.compose();
+  }
+
+  setStart(start) {
+    this.change({ start });
+  }
+
+  setSurface(surface) {
+    this.change({ surface });
+  }
+
+  setFit(text) {
+    if (text === null) return this.change({ fit: null });
+    try {
+      JSON.parse(text);
+    } catch {
+      return this.say("This file is no fit: it is no JSON. `twinslip fit -o fit.json` writes one.");
+    }
+    this.change({ fit: text });
+    return this.askMap();
+  }
+
+  compare(on) {
+    const { scene } = this;
+    const point = scene.points[scene.active];
+    const points = on ? [point, { ...point }] : [point];
+    this.setScene({ ...scene, compare: on, points, active: on ? 1 : 0 }, { curves: false });
+  }
+
+  undo(back) {
+    const scene = back ? this.history.undo() : this.history.redo();
+    if (!scene) return;
+    this.restore(scene);
+  }
+
+  /** A scene of before, of this system or another one. */
+  async restore(scene) {
+    const other = JSON.stringify(scene.given) !== JSON.stringify(this.scene.given);
+    if (other) {
+      const model = await this.readModel(scene.given);
+      if (!model) return;
+      this.model = model;
+    }
+    this.scene = scene;
+    this.remember();
+    if (other) this.forget();
+    this.show();
+    this.recompute({ settled: true, curves: true });
+  }
+
+  /** Other options of the model; `anew` forgets the values of the parameters, which are another system's. */
+  async setGiven(parts, anew = false) {
+    const given = { ...this.scene.given, ...parts };
+    for (const [name, value] of Object.entries(given)) if (value === undefined) delete given[name];
+    if (anew) {
+      if (given.system) delete given.law;
+      delete given.set;
+      for (const one of this.model.parameters) delete given[one.name];
+      if (given.system) for (const name of ["interfaces", "clusters", "si"]) delete given[name];
+    }
+    const model = await this.readModel(given);
+    if (!model) return;
+    const { scene } = this;
+    this.model = model;
+    const next = { ...scene, given };
+    const keeps = !anew && this.fits(next, model);
+    const begun = { ...sceneOf(model, given), theme: scene.theme };
+    this.forget();
+    this.setScene(keeps ? { ...next, start: null, portrait: null, surface: null } : begun);
+  }
+
+  /** Dimensionless or SI: the same point in other units. */
+  async setUnits(si) {
+    const names = this.model.parameters.map((one) => one.name);
+    const plain = Object.fromEntries(Object.entries(this.scene.given).filter(([name]) => !names.includes(name) && name !== "set"));
+    delete plain.si;
+    const [from, to] = [await this.readModel({ ...plain, ...(!si && { si: true }) }), await this.readModel({ ...plain, ...(si && { si: true }) })];
+    if (!from || !to) return;
+    const factor = (name) => {
+      const [a, b] = [parameterOf(from, name)?.value, parameterOf(to, name)?.value];
+      return a && b ? b / a : 1;
+    };
+    const converted = (values) => Object.fromEntries(
+      Object.entries(values).filter(([name]) => parameterOf(to, name)).map(([name, value]) => [name, Number((value * factor(name)).toPrecision(15))]),
+    );
+    const { scene } = this;
+    const points = scene.points.map(converted);
+    this.model = to;
+    this.forget();
+    this.setScene({
+      ...scene,
+      given: { ...plain, ...(si && { si: true }) },
+      values: converted(Object.fromEntries(names.map((name) => [name, scene.values[name] ?? scene.given[name]]).filter(([, x]) => typeof x === "number"))),
+      ranges: {},
+      points,
+      start: null,
+      until: null,
+      surface: null,
+      program: "",
+    });
+  }
+
+  /** The number that a text with a unit is, by the program. */
+  async readValue(name, text) {
+    const one = parameterOf(this.model, name);
+    const own = one.option ? { [name]: text } : { set: [`${name}=${text}`] };
+    const answer = await this.engine.ask("value", "model", { ...requests.modelOptions(this.scene), ...own });
+    if (!answer || answer.error || Boolean(answer.object.si) !== Boolean(this.model.si)) return null;
+    return parameterOf(answer.object, name)?.value ?? null;
+  }
+
+  /** Nothing of another system is shown. */
+  forget() {
+    this.engine.stopWhere((slot) => slot !== "model");
+    this.diagram.clear();
+    this.alongs.x.clear();
+    this.alongs.y.clear();
+    this.side.rebuild();
+    this.curvesOf = null;
+  }
+
+  // What is asked.
+
+  /** The scene has changed: quick answers at once, the others when it has settled. */
+  recompute({ settled, curves }) {
+    const shown = this.scene.compare ? [0, 1] : [0];
+    for (const index of shown) this.askPoint(index);
+    if (this.scene.compare && !shown.includes(this.scene.active)) this.scene.active = 0;
+    clearTimeout(this.settling);
+    // A drag that goes on leaves nothing behind that takes the processor.
+    if (!settled) this.engine.stopWhere((slot) => /^(section|branch)/.test(slot));
+    this.settling = setTimeout(() => this.settle(shown, curves), settled ? 0 : SETTLED);
+  }
+
+  settle(shown, curves) {
+    this.moved = null;
+    for (const index of shown) this.askSection(index);
+    for (const which of ["x", "y"]) if (this.scene.axes[which]) this.askBranch(which);
+    if (this.scene.fit) this.bands.ask();
+    if (curves || !this.curvesOf) this.askCurves();
+  }
+
+  /** Equilibria, the orbit and a run at a point. */
+  askPoint(index) {
+    const { scene, model, engine } = this;
+    const panes = this.points[index];
+    const began = this.moved;
+    let drawn = 0;
+    // Both are there: the drag is answered.
+    const answered = () => {
+      drawn += 1;
+      if (drawn !== 2 || !began) return;
+      requestAnimationFrame(() => this.timed("drag", began));
+      this.asked = null;
+      if (this.again) this.askDragged();
+    };
+    panes.verdict.moved();
+    const known = { equilibria: null, orbit: null };
+    let until = null;
+    const run = () => {
+      const next = requests.untilOf(scene, known.equilibria, known.orbit);
+      if (until && Math.abs(Math.log(next / until)) < 0.3) return;
+      until = next;
+      this.untilShown = until;
+      this.side.refresh();
+      const { command, options } = requests.run(scene, model, index, until);
+      engine.ask(`run:${index}`, command, options, {
+        onUpdate: (answer) => {
+          if (answer.ended || answer.error) {
+            panes.run.takeRun(answer);
+            panes.portrait.takeRun(answer);
+            answered();
+            if (answer.ended && model.kind === "system") this.askAround(index, answer);
+          }
+        },
+      });
+    };
+    const wanted = requests.equilibria(scene, model, index, this.boxes?.[index]?.of === model ? this.boxes[index].box : null);
+    engine.ask(`equilibria:${index}`, wanted.command, wanted.options, {
+      onUpdate: (answer) => {
+        if (!answer.ended && !answer.error) return;
+        known.equilibria = answer;
+        for (const pane of [panes.spectrum, panes.portrait]) pane.takeEquilibria(answer);
+        panes.verdict.takeAnswer("equilibria", answer);
+        answered();
+        if (scene.until) return;
+        setTimeout(() => {
+          if (this.scene === scene && !known.orbit) run();
+        }, PATIENCE);
+      },
+    });
+    const orbit = requests.orbit(scene, model, index);
+    engine.ask(`orbit:${index}`, orbit.command, orbit.options, {
+      onUpdate: (answer) => {
+        if (!answer.ended && !answer.error) return;
+        known.orbit = answer;
+        panes.spectrum.takeOrbit(answer);
+        panes.verdict.takeAnswer("orbit", answer);
+        if (!scene.until && (known.equilibria || answer.ended)) run();
+      },
+    });
+    if (scene.until) run();
+  }
+
+  /** All equilibria in a box around the run, for systems whose equilibria are found near a start alone. */
+  askAround(index, answer) {
+    const sides = this.model.states.map(({ name }) => {
+      const list = answer.column(name);
+      if (!list) return null;
+      const [lo, hi] = rangeAround([list]);
+      const width = hi - lo;
+      const digits = (x) => Number(x.toPrecision(2));
+      return `${name}=${digits(lo - width / 2)}:${digits(hi + width / 2)}`;
+    });
+    if (sides.some((side) => side === null) || sides.length > 6) return;
+    const box = sides.join(",");
+    this.boxes ??= {};
+    if (this.boxes[index]?.box === box && this.boxes[index].of === this.model) return;
+    this.boxes[index] = { box, of: this.model };
+    const { command, options } = requests.equilibria(this.scene, this.model, index, box);
+    const panes = this.points[index];
+    this.engine.ask(`equilibria:${index}`, command, options, {
+      onUpdate: (all) => {
+        if (!all.ended) return;
+        for (const pane of [panes.spectrum, panes.portrait]) pane.takeEquilibria(all);
+        panes.verdict.takeAnswer("equilibria", all);
+      },
+    });
+  }
+
+  askSection(index) {
+    const { scene, model, engine } = this;
+    if (model.states.length < 2) return;
+    const { command, options } = requests.section(scene, model, index, { ...RETURNS, lyapunov: true });
+    const panes = this.points[index];
+    engine.ask(`section:${index}`, command, options, {
+      background: true,
+      first: true,
+      onUpdate: (answer) => {
+        panes.returns.takeSection(answer);
+        if (answer.ended || answer.error) panes.verdict.takeAnswer("section", answer);
+      },
+    });
+  }
+
+  askBranch(which) {
+    const along = this.scene.axes[which];
+    for (const of of ["equilibria", "orbits"]) {
+      const { command, options } = requests.branch(this.scene, this.model, this.scene.active, of, along);
+      this.engine.ask(`branch:${which}:${of}`, command, options, {
+        background: true,
+        onUpdate: (answer) => this.alongs[which].takeBranch(of, answer),
+      });
+    }
+  }
+
+  /** The curves of the diagram, those that take least first. */
+  askCurves() {
+    const { scene, model } = this;
+    if (!scene.axes.y) return;
+    const kinds = [...model.loci].sort((a, b) => QUICK.indexOf(a) - QUICK.indexOf(b));
+    const began = performance.now();
+    this.curvesOf = kinds;
+    const asked = kinds.map((kind) => {
+      const { command, options } = requests.locus(scene, model, kind);
+      return this.engine.ask(`locus:${kind}`, command, options, {
+        background: true,
+        onUpdate: (answer) => this.diagram.takeCurve(kind, answer),
+      });
+    });
+    Promise.all(asked).then((answers) => {
+      if (answers.every((answer) => answer)) this.timed("curves", began);
+    });
+  }
+
+  askMap() {
+    const { command, options } = requests.regimes(this.scene, this.model, CELLS);
+    this.engine.ask("map", command, options, { background: true, first: true, onUpdate: (answer) => this.diagram.takeMap(answer) });
+  }
+
+  // What is said and kept.
+
+  timed(name, began) {
+    const now = performance.now();
+    performance.measure(`twinslip ${name}`, { start: began, end: now });
+  }
+
+  busy(slots) {
+    this.frame.busy(slots);
+    if (!this.points) return;
+    this.diagram.busy(slots, [...this.model.loci.map((kind) => `locus:${kind}`), "map"]);
+    for (const which of ["x", "y"]) this.alongs[which].busy(slots, [`branch:${which}:equilibria`, `branch:${which}:orbits`]);
+    this.bands.busy(slots, ["bands"]);
+    this.points.forEach((point, i) => {
+      point.run.busy(slots, [`run:${i}`]);
+      point.portrait.busy(slots, [`run:${i}`]);
+      point.returns.busy(slots, [`section:${i}`]);
+      point.spectrum.busy(slots, [`equilibria:${i}`, `orbit:${i}`]);
+      point.verdict.busy(slots, [`equilibria:${i}`, `orbit:${i}`, `section:${i}`]);
+    });
+  }
+
+  say(text, stays = false) {
+    this.frame.say(text, stays);
+  }
+
+  showText(title, text) {
+    this.frame.showText(title, text);
+  }
+
+  save(name, text, type) {
+    download(name, text, type);
+  }
+
+  /** The names of options that make a system in Python. */
+  systemNames() {
+    const own = this.model.parameters.filter((one) => one.option).map((one) => one.name);
+    return [...own, "system", "law", "interfaces", "clusters", "si", "slip_length", "normal_stress", "reference_rate", "time_unit", "shear_modulus", "shear_wave_speed"];
+  }
+
+  /** The page as it stands, as one file that needs no server. */
+  async savePage() {
+    const content = { recording: this.engine.recording(), state: this.scene };
+    const saved = await this.engine.transport.save?.(content);
+    if (saved) download("twinslip.html", saved, "text/html");
+    else this.say("The page could not be saved.");
+  }
+
+  /** The values at a point, for those who read them from outside. */
+  values(index = this.scene.active) {
+    return valuesAt(this.scene, this.model, index);
+  }
+}
