@@ -46,6 +46,8 @@ mod equilibria_generic;
 mod equilibria_pictures;
 mod estimates;
 mod events;
+#[cfg(feature = "explore")]
+mod explore_answers;
 mod figures_of_laws;
 mod fit;
 mod fit_command;

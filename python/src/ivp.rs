@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use twinslip::Error;
 use twinslip::integrate::Control;
-use twinslip_cli::parsed;
+use twinslip_cli::{Failure, parsed};
 use twinslip_tasks::scene::{
     Command, Halt, IntegrateOptions, IvpAsked, IvpError, IvpEvent, IvpFormula, IvpOutcome,
     IvpParts, IvpPlan, IvpSolution,
@@ -192,7 +192,7 @@ pub fn solve_ivp(
     let refused = |error: Error| {
         Ok((
             None,
-            Some((crate::run::field(&error), error.to_string())),
+            Some((Failure::field(&error), error.to_string())),
             None,
         ))
     };

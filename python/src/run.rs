@@ -7,14 +7,13 @@ use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyBytes, PyDict, PyList};
-use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 use twinslip::Error;
-use twinslip_cli::{Ending, Outlet, run_into};
+use twinslip_cli::{Ending, Failure, Outlet, run_into};
 use twinslip_output::Cell;
 use twinslip_output::plot::Drawing;
 
@@ -29,62 +28,6 @@ struct Kept {
     pictures: Vec<Arc<Drawing>>,
     messages: Vec<String>,
     ended: Option<Result<Ending, Failure>>,
-}
-
-/// Why a command failed.
-#[derive(Debug, Clone)]
-pub struct Failure {
-    /// `input`, `file` or `numerical`.
-    kind: &'static str,
-    /// The field that is to blame, where it is known.
-    field: Option<String>,
-    pub words: String,
-}
-
-impl Failure {
-    fn of(error: &Error) -> Self {
-        let kind = match error {
-            Error::File { .. } => "file",
-            error if error.is_input() => "input",
-            _ => "numerical",
-        };
-        Failure {
-            kind,
-            field: field(error),
-            words: error.to_string(),
-        }
-    }
-
-    pub fn of_panic(panic: &(dyn Any + Send)) -> Self {
-        let text = panic.downcast_ref::<&str>().copied();
-        let text = text.or(panic.downcast_ref::<String>().map(String::as_str));
-        Failure {
-            kind: "numerical",
-            field: None,
-            words: format!(
-                "a defect of twinslip, which please report: {}",
-                text.unwrap_or("a panic")
-            ),
-        }
-    }
-}
-
-/// The field that an error of the input names.
-pub fn field(error: &Error) -> Option<String> {
-    let plain = |name: &str| name.trim_start_matches('-').replace('-', "_");
-    match error {
-        Error::Parameter { name, .. } => Some(plain(name)),
-        Error::InUnits { error, .. } => field(error),
-        // The first name in backticks, or the first flag.
-        Error::Input(words) => {
-            let named = words.split('`').nth(1);
-            let flag = words
-                .split(|c: char| c.is_whitespace() || "'\"`=,;:)".contains(c))
-                .find(|word| word.len() > 2 && word.starts_with("--"));
-            named.or(flag).map(plain)
-        }
-        _ => None,
-    }
 }
 
 /// What the thread of a command and those who wait for it share.
@@ -260,6 +203,8 @@ impl Run {
         let kept = self.shared.kept();
         let failure = kept.ended.as_ref()?.as_ref().err()?;
         let Failure { kind, field, words } = failure.clone();
+        // A defect is told as what keeps a result from being whole.
+        let kind = if kind == "defect" { "numerical" } else { kind };
         Some((kind, field, words))
     }
 

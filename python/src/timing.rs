@@ -1,13 +1,13 @@
 //! How long a command takes without Python.
 
-use crate::run::{Failure, Shared, file};
+use crate::run::{Shared, file};
 use crate::threads::STACK;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::Arc;
 use std::thread;
 use std::time::Instant;
-use twinslip_cli::run_into;
+use twinslip_cli::{Failure, run_into};
 
 /// The seconds of the fastest of so many runs of a command, which keeps its rows as `Run` does, but starts no thread for each and hands
 /// nothing to Python.

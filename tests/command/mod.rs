@@ -3,6 +3,8 @@
 
 #[cfg(unix)]
 pub mod durable;
+#[cfg(feature = "explore")]
+pub mod explore;
 pub mod sweeps;
 
 use crate::common::ROOT;

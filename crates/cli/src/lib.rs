@@ -52,6 +52,8 @@ pub mod internals {
     pub use crate::ensemble::bands::{Band, Banded, Check, DEVIATIONS, Ends, Sample, Sides, bands};
     pub use crate::ensemble::draws::normal;
     pub use crate::ensemble::item::{Item, Measured, matched};
+    #[cfg(feature = "explore")]
+    pub use crate::explore::{bundle::bundle as explore_bundle, request::words as explore_words};
     pub use crate::program;
     #[cfg(feature = "parquet")]
     pub use crate::sweep::parquet_file::{GROUP, from_csv};

@@ -117,7 +117,7 @@ fn along(
         let mut remarks = report.remarks(&plan.system, &numerics(plan, orbit));
         remarks.push(format!("orbit: {}", summary(orbit, None, units)));
         let columns = (columns, units);
-        StreamOut::new(report, remarks, columns, false)
+        StreamOut::new(report, remarks, columns, report.repeats())
     } else {
         Ok(StreamOut::kept(report, columns))
     };

@@ -4,20 +4,22 @@ mod answer;
 mod assets;
 mod begin;
 mod browser;
-mod bundle;
+pub(crate) mod bundle;
 mod model;
 mod outbox;
+mod patient;
 mod queue;
-mod request;
+pub(crate) mod request;
 mod save;
 mod server;
 mod start;
+mod work;
 
 use super::call::Call;
 use super::words::time;
 use super::{Ending, say};
 use queue::Queue;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 use server::{Server, serve};
 use std::io::Write;
 use std::net::{Ipv4Addr, TcpListener};
@@ -55,12 +57,10 @@ pub struct ExploreOptions {
 
 pub fn run(options: &ExploreOptions, call: &Call) -> Result<Ending> {
     let begin = begin::begin(options.scene.as_deref(), call)?;
-    let given = begin["options"].as_object().cloned().unwrap_or_default();
     if let Some(path) = &options.save {
-        return save(path, &begin, &given, call);
+        return save(path, &begin, call);
     }
-    // What is wrong with the options is said here, and not on the page.
-    model::model_description(&request::words("orbit", &given)?)?;
+    check(&begin)?;
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, options.port));
     let refused = |error: std::io::Error| {
         Error::Input(format!(
@@ -76,6 +76,7 @@ pub fn run(options: &ExploreOptions, call: &Call) -> Result<Ending> {
         begin,
         queue: Arc::new(Queue::new()),
         saving: Mutex::new(()),
+        ticket: std::sync::Mutex::default(),
     });
     let address = server.address();
     let mut out = std::io::stdout();
@@ -85,7 +86,7 @@ pub fn run(options: &ExploreOptions, call: &Call) -> Result<Ending> {
         say("the page is at this address until Ctrl-C");
     } else if !browser::has_display() {
         say("no display was found: open this address in a browser; Ctrl-C ends");
-    } else if let Err(error) = browser::open(&address) {
+    } else if let Err(error) = browser::open(&server.ticket()?) {
         say(format_args!(
             "no browser could be opened ({error}): open this address in one; Ctrl-C ends"
         ));
@@ -105,6 +106,12 @@ pub fn run(options: &ExploreOptions, call: &Call) -> Result<Ending> {
     served.map_err(refused)
 }
 
+/// What is wrong with the options of a model is said before there is a page.
+fn check(begin: &Value) -> Result<()> {
+    let given = begin["options"].as_object().cloned().unwrap_or_default();
+    model::model_description(&request::words("orbit", &given)?).map(drop)
+}
+
 /// 160 random bits, which nobody guesses.
 fn token() -> Result<String> {
     let mut bytes = [0; 20];
@@ -117,15 +124,16 @@ fn token() -> Result<String> {
 }
 
 /// Writes the page with the answers to what it shows first.
-fn save(path: &Path, begin: &Value, given: &Map<String, Value>, call: &Call) -> Result<Ending> {
+fn save(path: &Path, begin: &Value, call: &Call) -> Result<Ending> {
     let wrong = |action, reason: String| Error::File {
         action,
         path: path.to_owned(),
         reason,
     };
     Place::File(path.to_owned()).check()?;
+    let given = begin["options"].as_object().cloned().unwrap_or_default();
     let mut progress = call.progress(false);
-    let recording = start::recording(given, |part| progress.come(part))?;
+    let recording = start::recording(&given, |part| progress.come(part))?;
     let seconds = progress.finish().as_secs_f64();
     let content = json!({"recording": recording, "state": null}).to_string();
     let page = save::saved_page(begin, &content).map_err(Error::Input)?;

@@ -18,8 +18,6 @@ use twinslip_output::{Cell, shortest};
 
 /// Bytes that may wait to be taken before the command waits.
 const ROOM: usize = 1 << 20;
-/// A client that takes nothing for so long has gone.
-const PATIENCE: Duration = Duration::from_secs(60);
 /// The least time between two lines that tell how far the command is.
 const BETWEEN: Duration = Duration::from_millis(100);
 /// Rows of one answer; more are a slip of the pen, and no page draws them.
@@ -205,12 +203,8 @@ impl Outbox {
             queue.wait_for_others(&self.stop);
         }
         let full = |kept: &mut Kept| kept.length() > ROOM && !self.is_stopped();
-        let kept = self.kept();
-        let waited = self.room.wait_timeout_while(kept, PATIENCE, full);
-        let (_kept, waited) = waited.unwrap_or_else(PoisonError::into_inner);
-        if waited.timed_out() {
-            self.stop.store(true, Ordering::Relaxed);
-        }
+        let waited = self.room.wait_while(self.kept(), full);
+        drop(waited);
     }
 }
 

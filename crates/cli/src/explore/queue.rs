@@ -12,7 +12,7 @@ use std::thread;
 use std::time::Duration;
 
 /// Commands that wait; one more is refused.
-pub const MOST_WAITING: usize = 64;
+pub const MOST_WAITING: usize = 48;
 /// Room for the calls of a command: searches go deep.
 const STACK: usize = 64 << 20;
 /// Background work looks again after so long whether other work runs.

@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 use std::path::Path;
 use twinslip::error::{Error, did_you_mean};
 use twinslip::friction::AnyLaw;
-use twinslip_tasks::scene::shipped_systems;
+use twinslip_tasks::scene::{shipped_laws, shipped_systems};
 
 /// The commands that a page may ask for.
 pub const COMMANDS: [&str; 8] = [
@@ -50,16 +50,15 @@ const TEXTS: [&str; 24] = [
     "stiffness-range",
 ];
 /// More of them.
-const MORE_TEXTS: [&str; 4] = ["program", "surface", "symmetry", "time-unit"];
+const MORE_TEXTS: [&str; 3] = ["surface", "symmetry", "time-unit"];
 /// Options of files that are switches here: what they name goes into the answer.
 const INTO_THE_ANSWER: [&str; 3] = ["events", "participation", "plot"];
 /// Options of files whose content may be given.
-const CONTENTS: [&str; 2] = ["law", "system"];
+const CONTENTS: [&str; 4] = ["ensemble", "law", "program", "system"];
 /// Options that have no meaning in a request, or are decided by the server.
-pub const REFUSED: [&str; 12] = [
+pub const REFUSED: [&str; 11] = [
     "checkpoint",
     "checkpoint-steps",
-    "ensemble",
     "explain",
     "force",
     "format",
@@ -72,11 +71,12 @@ pub const REFUSED: [&str; 12] = [
 ];
 
 /// The largest numbers that are allowed of what is counted.
-const LARGEST: [(&str, f64); 8] = [
+const LARGEST: [(&str, f64); 9] = [
     ("doublings", 12.0),
+    ("draws", 1000.0),
     ("interfaces", 1000.0),
     ("max-points", 100_000.0),
-    ("max-steps", 1e8),
+    ("max-steps", 1e7),
     ("points", 200_000.0),
     ("returns", 200_000.0),
     ("skip", 1e7),
@@ -183,9 +183,6 @@ fn texts(name: &str, option: &OptionInfo, value: &Value) -> Result<Vec<Option<St
             }
             value => {
                 let text = line(name, value)?;
-                if plain == "program" && text.to_lowercase().ends_with(".csv") {
-                    return wrong(name, "must be T:V,T:V,... and can't be a file here");
-                }
                 if option.positional && !text.starts_with(|c: char| c.is_ascii_lowercase()) {
                     return wrong(name, format!("is {text:?}, but must be a word"));
                 }
@@ -228,23 +225,43 @@ fn content(name: &str, plain: &str, text: &str) -> Result<String, Error> {
     if text.contains('\0') {
         return wrong(name, "has a zero byte, which no text may have");
     }
-    if text.contains('\n') {
+    if plain == "program" && text.trim_end().to_lowercase().ends_with(".csv") {
+        return wrong(
+            name,
+            "must be T:V,T:V,... or a table, and can't be a file here",
+        );
+    }
+    if plain == "ensemble" {
+        let draws = text
+            .rsplit_once('}')
+            .and_then(|(_, draws)| draws.trim().strip_prefix(':'));
+        bounded(name, "draws", draws.unwrap_or_default())?;
+        if !text.contains('\n') {
+            return wrong(name, "must be the text of a fit, and can't be a file here");
+        }
+    }
+    if text.contains('\n') || plain == "program" {
         return Ok(text.to_owned());
     }
-    if plain == "law" {
-        return match AnyLaw::NAMES.contains(&text) || ["ageing", "aging"].contains(&text) {
-            true => Ok(text.to_owned()),
-            false => unknown(name, text, &AnyLaw::NAMES),
-        };
+    if plain == "law" && (AnyLaw::NAMES.contains(&text) || ["ageing", "aging"].contains(&text)) {
+        return Ok(text.to_owned());
     }
-    let systems = shipped_systems();
-    match systems.iter().find(|(known, _)| *known == text) {
-        // A file of that name would be read in place of the system.
+    let (files, ending) = match plain {
+        "law" => (shipped_laws(), ".toml"),
+        _ => (shipped_systems(), ""),
+    };
+    let files = files
+        .iter()
+        .map(|(name, content)| (format!("{name}{ending}"), *content));
+    let files: Vec<(String, &str)> = files.collect();
+    match files.iter().find(|(known, _)| known == text) {
+        // A file of that name would be read in place of what is built in.
         Some((_, content)) if Path::new(text).exists() => Ok((*content).to_owned()),
         Some(_) => Ok(text.to_owned()),
         None => {
-            let known: Vec<&str> = systems.iter().map(|(known, _)| *known).collect();
-            unknown(name, text, &known)
+            let laws = AnyLaw::NAMES.iter().filter(|_| plain == "law").copied();
+            let known = laws.chain(files.iter().map(|(known, _)| known.as_str()));
+            unknown(name, text, &known.collect::<Vec<_>>())
         }
     }
 }

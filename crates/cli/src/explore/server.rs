@@ -2,32 +2,32 @@
 
 use super::answer::{self, Answer};
 use super::outbox::{Outbox, Whole, object, too_many_rows};
-use super::queue::{MOST_WAITING, Queue};
-use super::request::{COMMANDS, words};
+use super::patient::Patient;
+use super::queue::Queue;
+use super::request::COMMANDS;
 use super::save::{BEGIN, begin_element, in_script, saved_page};
-use super::{assets, bundle, model};
+use super::work::{self, Work, begin, too_many_waiting};
+use super::{assets, bundle, token};
 use crate::failure::Failure;
-use crate::{Ending, call::Outlet, run_into};
 use http_body_util::{BodyExt, Limited};
 use hyper::body::{Bytes, Incoming};
 use hyper::server::conn::http1;
 use hyper::service::service_fn;
 use hyper::{HeaderMap, Method, Request, StatusCode, header};
-use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::rt::TokioTimer;
 use serde_json::{Map, Value, json};
 use std::convert::Infallible;
 use std::future::poll_fn;
-use std::sync::Arc;
+use std::sync::{Arc, PoisonError};
 use std::task::Poll;
 use std::time::Duration;
 use tokio::net::TcpListener;
 use tokio::sync::{Mutex, Semaphore};
 use tokio::time::timeout;
+use twinslip::error::Result;
 
 /// Connections at once; more wait to be accepted.
 const MOST_CONNECTIONS: usize = 64;
-/// Bytes of the options of a request.
-const LONGEST: usize = 1 << 20;
 /// Bytes of a page that is saved.
 const LONGEST_PAGE: usize = 64 << 20;
 /// Bytes of the head of a request.
@@ -49,6 +49,8 @@ pub struct Server {
     pub queue: Arc<Queue>,
     /// Held while a page is saved.
     pub saving: Mutex<()>,
+    /// The secret of an address that leads to the page once.
+    pub ticket: std::sync::Mutex<Option<String>>,
 }
 
 /// Answers requests for ever.
@@ -74,7 +76,7 @@ pub async fn serve(listener: TcpListener, server: Arc<Server>) -> Infallible {
                 .header_read_timeout(PATIENCE)
                 .max_buf_size(LONGEST_HEAD)
                 .max_headers(MOST_HEADS)
-                .serve_connection(TokioIo::new(stream), service);
+                .serve_connection(Patient::new(stream), service);
             // That a client goes away is its own affair.
             let _ = connection.await;
             drop(place);
@@ -97,11 +99,46 @@ impl Server {
         format!("http://127.0.0.1:{}/{}/", self.port, self.token)
     }
 
-    async fn answer(&self, request: Request<Incoming>) -> Answer {
-        if let Err(why) = self.allowed(&request) {
-            return refused(StatusCode::FORBIDDEN, why);
+    /// An address that leads to the page once. A browser is begun with it: the words of a command line are no secret on a machine that
+    /// others use too.
+    pub fn ticket(&self) -> Result<String> {
+        let ticket = token()?;
+        let address = format!("http://127.0.0.1:{}/{ticket}", self.port);
+        *self.ticket.lock().unwrap_or_else(PoisonError::into_inner) = Some(ticket);
+        Ok(address)
+    }
+
+    /// Whether a request comes with the ticket, which is then no longer valid.
+    fn takes_ticket(&self, path: &str) -> bool {
+        let mut ticket = self.ticket.lock().unwrap_or_else(PoisonError::into_inner);
+        let path = path.strip_prefix('/').unwrap_or_default();
+        let is = ticket
+            .as_ref()
+            .is_some_and(|own| same(path.as_bytes(), own.as_bytes()));
+        if is {
+            *ticket = None;
         }
+        is
+    }
+
+    async fn answer(&self, request: Request<Incoming>) -> Answer {
         let path = request.uri().path();
+        let allowed = self.local(&request).and_then(|()| {
+            if request.method() == Method::GET && self.takes_ticket(path) {
+                return Ok(true);
+            }
+            self.known(path).map(|()| false)
+        });
+        match allowed {
+            Err(why) => {
+                let mut answer = refused(StatusCode::FORBIDDEN, why);
+                let close = header::HeaderValue::from_static("close");
+                answer.headers_mut().insert(header::CONNECTION, close);
+                return answer;
+            }
+            Ok(true) => return self.page_is_at(StatusCode::SEE_OTHER),
+            Ok(false) => {}
+        }
         let inner = path
             .get(1 + self.token.len()..)
             .unwrap_or_default()
@@ -111,7 +148,8 @@ impl Server {
         }
         let got = request.method() == Method::GET;
         match (inner.as_str(), inner.strip_prefix("/api/")) {
-            ("/" | "/explore.js" | "/style.css", _) if !got => not_allowed("GET"),
+            ("" | "/" | "/explore.js" | "/style.css", _) if !got => not_allowed("GET"),
+            ("", _) => self.page_is_at(StatusCode::PERMANENT_REDIRECT),
             ("/", _) => answer::whole(StatusCode::OK, "text/html; charset=utf-8", self.page()),
             ("/style.css", _) => {
                 let style = assets::style().into_owned();
@@ -137,8 +175,18 @@ impl Server {
         }
     }
 
-    /// That a request comes from the page of this server, or asks for that page, and knows the secret.
-    fn allowed(&self, request: &Request<Incoming>) -> Result<(), &'static str> {
+    /// Leads to the page.
+    fn page_is_at(&self, status: StatusCode) -> Answer {
+        let mut answer = answer::whole(status, "text/plain", "");
+        let address = header::HeaderValue::try_from(format!("/{}/", self.token));
+        answer
+            .headers_mut()
+            .insert(header::LOCATION, address.expect("a token is plain"));
+        answer
+    }
+
+    /// That a request comes from this machine, and from the page of this server or from nowhere.
+    fn local(&self, request: &Request<Incoming>) -> std::result::Result<(), &'static str> {
         let heads = request.headers();
         let hosts = ["127.0.0.1", "localhost"].map(|name| format!("{name}:{}", self.port));
         let is_host = |host: &str| hosts.iter().any(|own| own == host);
@@ -156,7 +204,12 @@ impl Server {
         if !sites.all(|site| [&b"same-origin"[..], b"none"].contains(&site)) {
             return Err("other pages have no access");
         }
-        let path = request.uri().path().as_bytes();
+        Ok(())
+    }
+
+    /// That it knows the secret.
+    fn known(&self, path: &str) -> std::result::Result<(), &'static str> {
+        let path = path.as_bytes();
         let token = path.get(1..=self.token.len()).unwrap_or_default();
         let ends = path
             .get(1 + self.token.len())
@@ -182,12 +235,7 @@ impl Server {
             Ok(options) => options,
             Err(refused) => return refused,
         };
-        let words = match command {
-            // Its options are those of the model, which an orbit has too.
-            "model" => words("orbit", &options).map(|words| Work::Model(words)),
-            _ => words(command, &options).map(Work::Command),
-        };
-        let work = match words {
+        let work = match Work::new(command, &options) {
             Ok(work) => work,
             Err(error) => {
                 let failure = Failure::of(&error);
@@ -200,8 +248,7 @@ impl Server {
         ));
         let added = begin(&self.queue, &outbox, work);
         if !added {
-            let why = format!("{MOST_WAITING} commands wait already; ask again when some are done");
-            return refused(StatusCode::SERVICE_UNAVAILABLE, why);
+            return refused(StatusCode::SERVICE_UNAVAILABLE, too_many_waiting());
         }
         let lines = answer::lines(Arc::clone(&outbox));
         if streams {
@@ -293,7 +340,7 @@ async fn body(
     request: Request<Incoming>,
     longest: usize,
     patience: Duration,
-) -> Result<Bytes, Answer> {
+) -> std::result::Result<Bytes, Answer> {
     if !is(request.headers(), header::CONTENT_TYPE, "application/json") {
         return Err(refused(
             StatusCode::UNSUPPORTED_MEDIA_TYPE,
@@ -319,39 +366,9 @@ async fn body(
 }
 
 /// The options in the body of a request.
-async fn options(request: Request<Incoming>) -> Result<Map<String, Value>, Answer> {
-    let body = body(request, LONGEST, PATIENCE).await?;
-    let text = match body.is_empty() {
-        true => b"{}",
-        false => &body[..],
-    };
-    // It goes no deeper than 128 levels.
-    serde_json::from_slice(text).map_err(|error| {
-        let why = format!("the options are no JSON object: {error}");
-        refused(StatusCode::BAD_REQUEST, why)
-    })
-}
-
-/// What a request asks for, as the words of a command line.
-pub enum Work {
-    /// A command.
-    Command(Vec<String>),
-    /// The description of the model that its options make.
-    Model(Vec<String>),
-}
-
-/// Runs it as soon as there is a place; false if too many wait.
-pub fn begin(queue: &Arc<Queue>, outbox: &Arc<Outbox>, work: Work) -> bool {
-    queue.add(Arc::clone(outbox), move |outbox| {
-        let ended = match &work {
-            Work::Command(words) => run_into(words, Arc::<Outbox>::clone(outbox)),
-            Work::Model(words) => model::model_description(words).map(|model| {
-                outbox.object(model.to_string().as_bytes());
-                Ending::Done
-            }),
-        };
-        outbox.end(ended.map_err(|error| Failure::of(&error)));
-    })
+async fn options(request: Request<Incoming>) -> std::result::Result<Map<String, Value>, Answer> {
+    let body = body(request, work::LONGEST, PATIENCE).await?;
+    work::options(&body).map_err(|why| refused(StatusCode::BAD_REQUEST, why))
 }
 
 /// The answer to who asked for an object alone.

@@ -1,10 +1,11 @@
 //! The answers to what the page shows first, for a page that is saved without having been opened: the commands are those that the page asks
 //! for, under the names of its places (`page/app.js`, `page/requests.js`).
 
+use super::model;
 use super::outbox::Outbox;
 use super::queue::Queue;
 use super::request::words;
-use super::{model, server};
+use super::work::{Work, begin};
 use crate::failure::Failure;
 use serde_json::{Map, Value, json};
 use std::sync::Arc;
@@ -50,18 +51,16 @@ type Asked = (String, &'static str, Options);
 
 /// The lines of the answers to these, several at a time.
 fn answers(queue: &Arc<Queue>, asked: Vec<Asked>, reached: &mut dyn FnMut(f64)) -> Options {
-    let begin = |(place, command, options): Asked| {
+    let begun = |(place, command, options): Asked| {
         let outbox = Arc::new(Outbox::new(true, None));
-        let _begun = match words(command, &options) {
-            Ok(words) => server::begin(queue, &outbox, server::Work::Command(words)),
-            Err(error) => {
-                outbox.end(Err(Failure::of(&error)));
-                true
-            }
-        };
+        match Work::new(command, &options) {
+            // There is room for all.
+            Ok(work) => drop(begin(queue, &outbox, work)),
+            Err(error) => outbox.end(Err(Failure::of(&error))),
+        }
         (place, outbox, Vec::new(), false)
     };
-    let mut all: Vec<(String, Arc<Outbox>, Vec<u8>, bool)> = asked.into_iter().map(begin).collect();
+    let mut all: Vec<(String, Arc<Outbox>, Vec<u8>, bool)> = asked.into_iter().map(begun).collect();
     let count = all.len();
     while all.iter().any(|one| !one.3) {
         for (_, outbox, text, ended) in all.iter_mut().filter(|one| !one.3) {
@@ -74,9 +73,11 @@ fn answers(queue: &Arc<Queue>, asked: Vec<Asked>, reached: &mut dyn FnMut(f64)) 
     }
     let lines = |text: Vec<u8>| -> Vec<Value> {
         let lines = text.split(|&byte| byte == b'\n');
-        lines
+        let mut lines: Vec<Value> = lines
             .filter_map(|line| serde_json::from_slice(line).ok())
-            .collect()
+            .collect();
+        lines.retain(|line| line.get("reached").is_none());
+        lines
     };
     all.into_iter()
         .map(|(place, _, text, _)| (place, json!(lines(text))))
