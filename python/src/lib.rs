@@ -2,12 +2,14 @@
 //!
 //! The Python side, in `python/twinslip`, has the words that users see.
 
+mod explore;
 mod ivp;
 mod run;
 mod table;
 mod threads;
 mod timing;
 
+use explore::{Asked, explore_begin, explore_script, explore_style};
 use ivp::{IvpRun, Solution, solve_ivp};
 use pyo3::prelude::*;
 use run::{Picture, Run};
@@ -45,7 +47,10 @@ mod _core {
     use super::*;
 
     #[pymodule_export]
-    use super::{IvpRun, Picture, Run, Solution, solve_ivp, timed};
+    use super::{
+        Asked, IvpRun, Picture, Run, Solution, explore_begin, explore_script, explore_style,
+        solve_ivp, timed,
+    };
 
     /// The version of twinslip.
     #[pyfunction]

@@ -9,7 +9,7 @@ pub(crate) mod ensemble;
 mod equilibria;
 mod examples;
 #[cfg(feature = "explore")]
-mod explore;
+pub mod explore;
 mod failure;
 mod fault;
 mod fit;

@@ -5,6 +5,7 @@ mod assets;
 mod begin;
 mod browser;
 pub(crate) mod bundle;
+mod engine;
 mod model;
 mod outbox;
 mod patient;
@@ -14,6 +15,8 @@ mod save;
 mod server;
 mod start;
 mod work;
+
+pub use engine::{Asked, Engine, widget_begin, widget_module, widget_style};
 
 use super::call::Call;
 use super::words::time;
@@ -30,14 +33,14 @@ use twinslip::error::{Error, Result};
 use twinslip_output::{Place, write_whole};
 use twinslip_tasks::scene::ModelOptions;
 
-pub const EXAMPLE: &str = "Example, two interfaces, a scene, and a system of one's own:
+pub(crate) const EXAMPLE: &str = "Example, two interfaces, a scene, and a system of one's own:
   twinslip explore
   twinslip explore fig12
   twinslip explore --system lorenz --no-browser";
 
 /// `explore`: a page on which a system is explored.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
-pub struct ExploreOptions {
+pub(crate) struct ExploreOptions {
     /// Begin with the system and the options of this scene: a built-in one, such as fig12, or a file
     #[arg(value_name = "SCENE")]
     scene: Option<PathBuf>,
@@ -55,7 +58,7 @@ pub struct ExploreOptions {
     save: Option<PathBuf>,
 }
 
-pub fn run(options: &ExploreOptions, call: &Call) -> Result<Ending> {
+pub(crate) fn run(options: &ExploreOptions, call: &Call) -> Result<Ending> {
     let begin = begin::begin(options.scene.as_deref(), call)?;
     if let Some(path) = &options.save {
         return save(path, &begin, call);
