@@ -98,7 +98,6 @@ export class App {
   show() {
     const { scene, model } = this;
     this.frame.layout(this);
-    document.documentElement.dataset.theme = scene.theme;
     this.diagram.element.hidden = !scene.axes.y;
     this.alongs.y.element.hidden = !scene.axes.y;
     this.bands.element.hidden = !scene.fit;

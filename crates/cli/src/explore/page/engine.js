@@ -102,15 +102,28 @@ export class WidgetTransport {
     this.model = model;
     this.answers = true;
     this.waiting = new Map();
+    // All views of a widget get all messages: each has names of its own for its questions.
+    this.name = Math.random().toString(36).slice(2);
     this.next = 1;
-    model.on("msg:custom", (message) => {
+    this.listener = (message) => {
       if (message.type === "lines") this.waiting.get(message.id)?.(message.lines);
-    });
+    };
+    model.on("msg:custom", this.listener);
+  }
+
+  /** The view has gone: nothing is asked any more. */
+  close() {
+    this.answers = false;
+    this.model.off("msg:custom", this.listener);
   }
 
   ask({ command, options, background, signal }, take) {
-    const id = this.next++;
+    const id = `${this.name}-${this.next++}`;
     return new Promise((done, failed) => {
+      if (!this.answers) {
+        failed(new DOMException("the view has gone", "AbortError"));
+        return;
+      }
       const leave = () => {
         this.waiting.delete(id);
         this.model.send({ type: "stop", id });

@@ -9,6 +9,14 @@ const THEMES = { auto: "light", light: "dark", dark: "auto" };
 /** A message stays so many milliseconds, and longer the longer it is. */
 const SHOWN = 4000;
 
+/** The theme of the notebook around the page, where that says it. */
+function themeAround() {
+  const { jpThemeLight, vscodeThemeKind } = document.body.dataset;
+  if (jpThemeLight) return jpThemeLight === "true" ? "light" : "dark";
+  if (vscodeThemeKind) return vscodeThemeKind.endsWith("light") ? "light" : "dark";
+  return "auto";
+}
+
 export function frameOf(app) {
   return new Frame(app);
 }
@@ -23,7 +31,7 @@ class Frame {
     this.compare = button("Compare", () => app.compare(!app.scene.compare), { "aria-pressed": "false", title: "Two points side by side" });
     this.link = button("Link", () => this.copyLink(), { title: "Copy an address that shows this" });
     this.save = button("Save page", () => app.savePage(), { title: "This page as one file that needs no server" });
-    this.words = button("Glossary", () => openGlossary(), { title: "What the labels mean" });
+    this.words = button("Glossary", () => openGlossary(this.element), { title: "What the labels mean" });
     this.theme = button("Theme", () => app.change({ theme: THEMES[app.scene.theme] }), { title: "Automatic, light or dark" });
     const buttons = [this.undo, this.redo, this.compare, this.link, this.save, this.words, this.theme];
     this.message = element("div", { class: "message", role: "alert", hidden: true });
@@ -58,6 +66,7 @@ class Frame {
   }
 
   layout(app) {
+    this.element.dataset.theme = app.scene.theme === "auto" ? themeAround() : app.scene.theme;
     this.columns[1].hidden = !app.scene.compare;
     this.main.classList.toggle("compares", app.scene.compare);
     for (const column of this.columns) column.firstChild.hidden = !app.scene.compare;

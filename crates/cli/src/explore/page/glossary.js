@@ -38,7 +38,7 @@ export function term(label, shown = label) {
   const link = element("a", { class: "term", href: `#term-${slug(label)}`, title: words }, shown);
   link.addEventListener("click", (event) => {
     event.preventDefault();
-    openGlossary(label);
+    openGlossary(link, label);
   });
   return link;
 }
@@ -49,16 +49,18 @@ function slug(label) {
 
 let dialog = null;
 
-/** Opens the list of all terms, at one of them. */
-export function openGlossary(label = null) {
+/** Opens the list of all terms in the page that an element is of, at one of them. */
+export function openGlossary(from, label = null) {
   if (!dialog) {
     const list = element("dl", {});
     for (const [name, words] of entries) list.append(element("dt", { id: `term-${slug(name)}` }, name), element("dd", {}, words));
     const close = element("button", { type: "button", class: "close" }, "Close");
     dialog = element("dialog", { class: "glossary", "aria-label": "Glossary" }, element("h2", {}, "Glossary"), close, list);
     close.addEventListener("click", () => dialog.close());
-    document.body.append(dialog);
   }
+  // The styles of the page are of elements in it.
+  const page = from.closest(".twinslip");
+  if (dialog.parentNode !== page) page.append(dialog);
   dialog.showModal();
   if (label) dialog.querySelector(`#term-${CSS.escape(slug(label))}`)?.scrollIntoView({ block: "center" });
 }

@@ -15,11 +15,16 @@ export function show(root, transport, begin) {
 /** The widget of a notebook, as anywidget has it. */
 export function render({ model, el }) {
   const begin = JSON.parse(model.get("begin"));
-  const app = show(el, new WidgetTransport(model), { ...begin, inNotebook: true });
-  return () => app.engine.stopWhere(() => true);
+  const transport = new WidgetTransport(model);
+  const app = show(el, transport, { ...begin, inNotebook: true });
+  return () => {
+    app.engine.stopWhere(() => true);
+    transport.close();
+  };
 }
 
-const told = globalThis.document?.getElementById("begin");
+// A notebook may have a heading of that name.
+const told = globalThis.document?.querySelector("script#begin");
 if (told) {
   const begin = JSON.parse(told.textContent || "{}");
   const transport = begin.saved ? new RecordedTransport(begin.saved.recording) : new HttpTransport("./");
