@@ -21,8 +21,8 @@ const DRIVING_RANGE: (f64, f64) = (1e-3, 1e4);
 /// K is worth varying up to this many critical stiffnesses, and to this where the law has none.
 const ABOVE_CRITICAL: f64 = 1.2;
 const STIFFEST: f64 = 1.0;
-/// The least K of its range over the largest: not 0, which no branch reaches.
-const SOFTEST: f64 = 1e-3;
+/// The least K of its range over the largest: not 0, which no branch reaches, and not where curves of orbits take minutes.
+const SOFTEST: f64 = 0.025;
 /// Radiation damping in the middle of its range, and the factor to its ends.
 const DAMPING: (f64, f64) = (1e-4, 100.0);
 /// The factor to both ends of the range of another positive parameter.
