@@ -1,4 +1,4 @@
-//! Systems and laws whose text stands in the place of a file's name, as programs give them.
+//! Systems, laws, fits and programs whose text stands in the place of a file's name, as other programs give them.
 
 use crate::command;
 use crate::common::ROOT;
@@ -6,6 +6,7 @@ use command::{Ended, run};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
+use twinslip_tasks::scene::EnsembleFile;
 
 fn text_of(path: &str) -> String {
     fs::read_to_string(Path::new(ROOT).join(path)).expect("a file")
@@ -51,6 +52,135 @@ fn a_text_is_the_law_that_its_file_is() {
         );
         assert_eq!(given["result"], named["result"], "{run}");
         assert_eq!(given["model"], named["model"], "{run}");
+    }
+}
+
+/// With a number of draws behind it or without, as behind a file's name.
+#[test]
+fn a_text_is_the_fit_that_its_file_is() {
+    let text = text_of("tests/data/fit.json");
+    assert!(text.contains('\n'));
+    for (command, draws) in [
+        ("law --points 2 --format json", ":0"),
+        ("law --points 2 --format json", ":20"),
+        (
+            "branch equilibria --stiffness 1e10 --from 1e-6 --to 1e-5 --format json",
+            ":0",
+        ),
+    ] {
+        let (given, named) = (
+            made(command, "--ensemble", &format!("{text}{draws}")),
+            made(
+                command,
+                "--ensemble",
+                &format!("tests/data/fit.json{draws}"),
+            ),
+        );
+        assert_eq!(given["model"], named["model"], "{command}");
+        let mut result = named["result"].clone();
+        assert_eq!(result["ensemble"]["file"], "tests/data/fit.json");
+        result["ensemble"]["file"] = "(a text)".into();
+        assert_eq!(given["result"], result, "{command}");
+    }
+    let whole = EnsembleFile::parse(&text).expect("a text");
+    assert_eq!((whole.draws, &*whole.told()), (None, "(a text)"));
+    let drawn = EnsembleFile::parse(&format!("{}\n:7", text.trim_end())).expect("a text");
+    assert_eq!((drawn.draws, &*drawn.told()), (Some(7), "(a text)"));
+}
+
+#[test]
+fn what_is_wrong_with_the_text_of_a_fit_is_said_without_it() {
+    let text = text_of("tests/data/fit.json");
+    let law = "law --points 2";
+    let refused = |command: &str, given: &str, sentence: &str| {
+        let ended = with(command, "--ensemble", given);
+        assert_eq!(ended.code, 2, "{}", ended.err);
+        assert!(ended.err.contains(sentence), "{}", ended.err);
+        assert!(!ended.err.contains("correlation"), "{}", ended.err);
+    };
+    refused(
+        law,
+        "{\n}",
+        "--ensemble (a text): it is not what twinslip fit writes as JSON",
+    );
+    refused(
+        law,
+        "none\n",
+        "--ensemble (a text): it is not what twinslip fit writes as JSON",
+    );
+    refused(
+        law,
+        &format!("{text}:many"),
+        "the number of draws is \"many\"",
+    );
+    refused(law, &format!("{text}:1e7"), "--ensemble \"(a text):1e7\"");
+    refused(
+        "law --law slip",
+        &text,
+        "--ensemble (a text) is a fit of the law",
+    );
+    refused(
+        "law --direct-effect 0.01",
+        &text,
+        "--direct-effect is given, and --ensemble (a text) has it fitted",
+    );
+    refused(
+        "sweep --driving 1e-6:1e-5:2 --stiffness 1e10",
+        &format!("{text}:0"),
+        "such as (a text):50",
+    );
+}
+
+#[test]
+fn a_text_is_the_program_that_its_file_is() {
+    let path = command::folder("text_given_program").join("steps.csv");
+    let text = "# a remark: of two changes\ntime, driving, until\n1, 0,\n\n2.5,4,3.5\n";
+    fs::write(&path, text).expect("written");
+    for run in [
+        "integrate --driving 10 --stiffness 0.14 --until 5 --points 11 --format json",
+        "integrate --si --driving 1e-5 --stiffness 5e9 --until 5 --points 3 --format json",
+        "integrate --interfaces 3 --driving 10 --stiffness 0.14 --until 5 --points 3 --format json",
+    ] {
+        let (given, named) = (
+            made(run, "--program", text),
+            made(run, "--program", path.to_str().expect("UTF-8")),
+        );
+        assert_eq!(given["result"], named["result"], "{run}");
+        assert_eq!(given["model"], named["model"], "{run}");
+        assert_eq!(given["model"]["program"], "1:0,2.5-3.5:4");
+    }
+    // Changes on lines of their own have no header, and may have units.
+    let run = "integrate --driving 1um/s --stiffness 5e9 --until 5 --final-only --format json";
+    let lines = made(run, "--program", "1:0um/s,\n2.5-3.5:4um/s");
+    assert_eq!(lines["model"]["program"], "1:0,2.5-3.5:0.000004");
+}
+
+#[test]
+fn what_is_wrong_with_the_text_of_a_program_is_said_by_line() {
+    let run = "integrate --driving 10 --stiffness 0.14 --until 5";
+    for (text, sentence) in [
+        (
+            "time,driving\n1,0\nx,2\n",
+            "--program (a text):3: time \"x\" is not a number",
+        ),
+        (
+            "time,driving\n1,0\n9,2\n",
+            "--program (a text):3: the time is 9",
+        ),
+        (
+            "time,speed\n1,0\n",
+            "a column of --program (a text) is speed",
+        ),
+        (
+            "time\n1\n",
+            "--program (a text):1: the column driving is missing",
+        ),
+        ("time,driving\n", "--program (a text):1: there is no row"),
+        ("\n", "--program \"\" must be T:V"),
+    ] {
+        let ended = with(run, "--program", text);
+        assert_eq!(ended.code, 2, "{text:?}: {}", ended.err);
+        assert!(ended.err.contains(sentence), "{text:?}: {}", ended.err);
     }
 }
 

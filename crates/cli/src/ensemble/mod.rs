@@ -44,9 +44,10 @@ pub fn run(plan: &EnsemblePlan, command: &Command, call: &Call) -> Result<Ending
     if let Some(law) = given_law(&call.words)
         && law != plan.fit.law
     {
+        let law = if law.contains('\n') { "(a text)" } else { law };
         return Err(Error::Input(format!(
             "`law` {law}: `ensemble` {} is a fit of the law {}",
-            plan.file.path.display(),
+            plan.file.told(),
             plan.fit.law
         )));
     }
@@ -71,7 +72,7 @@ pub fn run(plan: &EnsemblePlan, command: &Command, call: &Call) -> Result<Ending
     if !plan.fit.converged {
         report.say(format!(
             "warning: the fit in {} is undecided: its uncertainty may be wrong",
-            plan.file.path.display()
+            plan.file.told()
         ));
     }
     if call.outlet.is_none() {
@@ -201,7 +202,7 @@ impl Ensemble<'_> {
         self.report.say(format!(
             "the uncertainty of {} in {}: {} (seed {}){}",
             names.join(", "),
-            self.plan.file.path.display(),
+            self.plan.file.told(),
             several(draws, "draw", "draws"),
             draws::SEED,
             match (failed, first) {
@@ -221,7 +222,7 @@ impl Ensemble<'_> {
             ));
         }
         json!({
-            "file": self.plan.file.path.display().to_string(),
+            "file": self.plan.file.told(),
             "draws": draws,
             "seed": draws::SEED,
             "failed": failed,

@@ -2,7 +2,9 @@
 
 use super::file::read_bounded;
 use super::options::number;
+use super::text::given_text;
 use super::units::{Quantity, Units};
+use std::borrow::Cow;
 use std::path::Path;
 use twinslip::error::{Error, Result};
 
@@ -71,24 +73,24 @@ pub struct Program {
 
 impl Program {
     /// `T:V` for a step and `T1-T2:V` for a ramp, comma-separated; or the name of a CSV file with the columns `time`, `driving`
-    /// and, for ramps, `until`. `end` is that of the run.
+    /// and, for ramps, `until`, or the text of such a file. `end` is that of the run.
     ///
     /// # Errors
     /// [`Error::Input`] for what can't be read, and for times and velocities outside their domain, with the place;
     /// [`Error::File`].
     pub fn read(text: &str, end: f64) -> Result<Self> {
-        let (changes, place): (_, Box<dyn Fn(usize) -> String>) =
-            if text.to_lowercase().ends_with(".csv") {
-                let (changes, lines) = from_file(text)?;
-                let place = move |i: usize| format!("`program` {text}:{}", lines[i]);
-                (changes, Box::new(place))
-            } else {
-                let parts: Vec<&str> = text.split(',').map(str::trim).collect();
-                let changes = parts.iter().map(|part| from_text(part));
-                let changes: Vec<Change> = changes.collect::<Result<_>>()?;
-                let place = move |i: usize| format!("`program` {}", shown(parts[i]));
-                (changes, Box::new(place))
-            };
+        let (changes, place): (_, Box<dyn Fn(usize) -> String>) = if is_table(text) {
+            let name = given_text(Path::new(text)).map_or(text, |_| "(a text)");
+            let (changes, lines) = from_table(name, text)?;
+            let place = move |i: usize| format!("`program` {name}:{}", lines[i]);
+            (changes, Box::new(place))
+        } else {
+            let parts: Vec<&str> = text.split(',').map(str::trim).collect();
+            let changes = parts.iter().map(|part| from_text(part));
+            let changes: Vec<Change> = changes.collect::<Result<_>>()?;
+            let place = move |i: usize| format!("`program` {}", shown(parts[i]));
+            (changes, Box::new(place))
+        };
         check(&changes, end, &*place)?;
         Ok(Program { changes })
     }
@@ -233,9 +235,24 @@ fn ramp(when: &str) -> Option<(&str, &str)> {
     None
 }
 
-/// The changes in the rows of a file, by the names of its columns, with the line of each.
-fn from_file(name: &str) -> Result<(Vec<Change>, Vec<u64>)> {
-    let text = read_bounded(Path::new(name), LONGEST)?;
+/// Whether changes are in the rows of a table: of a CSV file, or of a text whose first line names columns and has no change.
+pub(super) fn is_table(text: &str) -> bool {
+    let remark = |line: &&str| line.trim().is_empty() || line.starts_with('#');
+    match given_text(Path::new(text)) {
+        None => text.to_lowercase().ends_with(".csv"),
+        Some(text) => text
+            .lines()
+            .find(|line| !remark(line))
+            .is_some_and(|head| !head.contains(':')),
+    }
+}
+
+/// The changes in the rows of a file or of its text, by the names of its columns, with the line of each.
+fn from_table(name: &str, given: &str) -> Result<(Vec<Change>, Vec<u64>)> {
+    let text: Cow<'_, str> = match given_text(Path::new(given)) {
+        Some(text) => text.into(),
+        None => read_bounded(Path::new(given), LONGEST)?.into(),
+    };
     let wrong = |line: u64, what: String| Error::Input(format!("`program` {name}:{line}: {what}"));
     let mut reader = csv::ReaderBuilder::new();
     let mut reader = reader

@@ -56,7 +56,7 @@ impl SlabOptions {
     }
 
     /// What messages call the law: not its text, where that was given.
-    fn law_told(&self) -> &str {
+    pub(super) fn law_told(&self) -> &str {
         given_text(Path::new(&self.law)).map_or(&self.law, |_| "(a text)")
     }
 

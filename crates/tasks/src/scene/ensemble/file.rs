@@ -1,5 +1,7 @@
-//! `FIT.json[:N]`.
+//! `FIT.json[:N]`, or the text of such a file in place of its name.
 
+use super::super::text::given_text;
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use twinslip::error::{Error, Result};
 
@@ -9,7 +11,7 @@ const MOST_DRAWS: usize = 1_000_000;
 /// Which fit, and how often its parameters are drawn.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct EnsembleFile {
-    /// The file.
+    /// The file, or its text.
     pub path: PathBuf,
     /// How many draws are asked for, if any number is.
     pub draws: Option<usize>,
@@ -25,6 +27,21 @@ impl EnsembleFile {
             path: PathBuf::from(text),
             draws: None,
         };
+        if given_text(&whole.path).is_some() {
+            // An object ends with a brace; a text that does not is read as it is, and refused.
+            let (object, count) = text.split_at(text.rfind('}').map_or(text.len(), |end| end + 1));
+            let Some(count) = count.trim().strip_prefix(':') else {
+                return Ok(whole);
+            };
+            return Ok(EnsembleFile {
+                // With a line's end it is still a text.
+                path: PathBuf::from(format!("{object}\n")),
+                draws: Some(number_of_draws(
+                    &format!("{}:{count}", whole.told()),
+                    count,
+                )?),
+            });
+        }
         let Some((path, count)) = text.rsplit_once(':') else {
             return Ok(whole);
         };
@@ -32,15 +49,32 @@ impl EnsembleFile {
         if Path::new(text).exists() || count.contains(['/', '\\', '.']) {
             return Ok(whole);
         }
-        let draws = count.parse::<usize>().ok();
-        match draws.filter(|&draws| draws <= MOST_DRAWS) {
-            Some(draws) => Ok(EnsembleFile {
-                path: PathBuf::from(path),
-                draws: Some(draws),
-            }),
-            None => Err(Error::Input(format!(
-                "`ensemble` {text:?}: the number of draws is {count:?}, but must be a whole number from 0 to 1e6"
-            ))),
-        }
+        Ok(EnsembleFile {
+            draws: Some(number_of_draws(text, count)?),
+            path: PathBuf::from(path),
+        })
     }
+
+    /// What messages call it: not the text itself.
+    pub fn told(&self) -> Cow<'_, str> {
+        told(&self.path)
+    }
+}
+
+/// What messages call a file, or a text in its place.
+pub(super) fn told(path: &Path) -> Cow<'_, str> {
+    match given_text(path) {
+        Some(_) => "(a text)".into(),
+        None => path.to_string_lossy(),
+    }
+}
+
+/// The number of draws at the end of an option.
+fn number_of_draws(option: &str, count: &str) -> Result<usize> {
+    let draws = count.parse::<usize>().ok();
+    draws.filter(|&draws| draws <= MOST_DRAWS).ok_or_else(|| {
+        Error::Input(format!(
+            "`ensemble` {option:?}: the number of draws is {count:?}, but must be a whole number from 0 to 1e6"
+        ))
+    })
 }

@@ -1,8 +1,11 @@
 //! What `twinslip fit` has written: parameters of friction with their covariance, and those that were fixed.
 
 use super::super::file::read_bounded;
+use super::super::text::given_text;
+use super::file::told;
 use nalgebra::{DMatrix, DVector};
 use serde::Deserialize;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::Path;
 use twinslip::error::{Error, Result};
@@ -98,13 +101,16 @@ struct OneFitted {
 }
 
 impl FrictionFit {
-    /// Reads the object that `twinslip fit --format json` writes.
+    /// Reads the object that `twinslip fit --format json` writes, from a file or a text in its place.
     ///
     /// # Errors
     /// [`Error::File`] if it can't be read; [`Error::Input`] for what is no fit, and for one that has no meaning here.
     pub fn read(path: &Path) -> Result<Self> {
-        let text = read_bounded(path, LONGEST)?;
-        let wrong = |what: String| Error::Input(format!("`ensemble` {}: {what}", path.display()));
+        let text: Cow<'_, str> = match given_text(path) {
+            Some(text) => text.into(),
+            None => read_bounded(path, LONGEST)?.into(),
+        };
+        let wrong = |what: String| Error::Input(format!("`ensemble` {}: {what}", told(path)));
         let object: Envelope = serde_json::from_str(&text).map_err(|error| {
             wrong(format!(
                 "it is not what twinslip fit writes as JSON: {error}"

@@ -53,8 +53,8 @@ impl EnsemblePlan {
         let draws = file.draws.unwrap_or(usual);
         if sweeps && draws == 0 {
             return Err(Error::Input(format!(
-                "`ensemble` {text}: a sweep has probabilities, which need draws; say how many, such as {}:{DRAWS_OF_SWEEP}",
-                file.path.display()
+                "`ensemble` {0}:0: a sweep has probabilities, which need draws; say how many, such as {0}:{DRAWS_OF_SWEEP}",
+                file.told()
             )));
         }
         let mut estimate = command.clone();

@@ -90,7 +90,7 @@ impl Command {
 
     /// What has no meaning beside a fit.
     pub(super) fn refuses(&mut self, fit: &FrictionFit, file: &EnsembleFile) -> Result<()> {
-        let of_file = file.path.display().to_string();
+        let of_file = file.told();
         let wrong = |what: String| Err(Error::Input(what));
         let (resumes, draws) = match self {
             Command::Branch(options) => (options.resume.is_some(), false),
@@ -119,7 +119,7 @@ impl Command {
         };
         // The default can't be told from the same name given.
         if slab.law != SPINODAL && slab.law != fit.law {
-            let law = &slab.law;
+            let law = slab.law_told();
             return wrong(format!(
                 "`law` {law}: `ensemble` {of_file} is a fit of the law {}",
                 fit.law

@@ -14,6 +14,7 @@ pub(super) use unit::{Kind, with_unit};
 
 use super::command::Command;
 use super::ensemble::implied;
+use super::program::is_table;
 use super::units::TimeUnit;
 use clap::Subcommand;
 use twinslip::friction::AnyLaw;
@@ -267,9 +268,9 @@ impl<'a> Made<'a> {
         Ok(vec![(self.flag.to_owned(), value)])
     }
 
-    /// The velocities and times of a program; a file stays.
+    /// The velocities and times of a program; a file, or its text, stays.
     fn program(&mut self, text: &str) -> Result<String, String> {
-        if text.to_lowercase().ends_with(".csv") {
+        if is_table(text) {
             return Ok(text.to_owned());
         }
         let seconds = self.context.seconds;
