@@ -81,7 +81,8 @@ impl Declared {
 
 /// The words of a help before the symbol, and what they are of or at: "Friction coefficient at V*" of "Friction coefficient a_v at V* [...]".
 fn meaning(help: &str, symbol: &str) -> String {
-    let sentence = help.trim_start_matches("With --si: ");
+    // Where an option has a meaning in SI alone, its help begins with that.
+    let sentence = help.split_once("si: ").map_or(help, |(_, rest)| rest);
     let end = sentence
         .find(['[', ':', ';', '('])
         .unwrap_or(sentence.len());
