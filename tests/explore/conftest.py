@@ -36,7 +36,7 @@ class Explored:
 
     def __init__(self, page, address):
         self.page, self.wrong = page, []
-        page.on("pageerror", lambda error: self.wrong.append(f"{error}"))
+        page.on("pageerror", lambda error: self.wrong.append(f"{error} {error.stack}"))
         page.on("console", lambda message: self.wrong.append(message.text) if message.type in ("error", "warning") else None)
         page.goto(address)
 
@@ -53,10 +53,13 @@ class Explored:
             time.sleep(0.05)
         raise AssertionError(f"never: {expression}\n{self.page.inner_text('body')[:3000]}")
 
-    def idle(self):
-        """Waits until nothing is being computed."""
-        still = "document.querySelector('.twinslip')?.dataset.busy === 'false'"
+    def idle(self, curves=False):
+        """Waits until all of the points is answered, and all curves and branches too if they are asked for."""
+        behind = "" if curves else " && !/^(locus|branch|map|bands)/.test(slot)"
+        works = f"[...twinslip.engine.current].some(([slot, one]) => one.busy{behind})"
+        still = f"globalThis.twinslip?.points && !twinslip.asked && !({works})"
         self.wait(still)
+        # What waits for the page to settle begins by then.
         self.page.wait_for_timeout(300)
         self.wait(still)
 

@@ -23,7 +23,7 @@ y = 1.0
 
 def test_the_first_page_is_whole(slab, explored):
     page = explored(slab.address)
-    page.idle()
+    page.idle(curves=True)
     assert page.pane("verdict").locator(".headline").inner_text().lower() == "periodic"
     assert page.value("[...twinslip.diagram.curves.keys()].length") >= 5
     # No pane is without a drawing, and all say in words what they show.
@@ -87,7 +87,7 @@ def test_sliders_and_fields(slab, explored):
     field = page.page.get_by_role("textbox", name=re.compile("^Healing time.*value"))
     field.fill("200")
     field.press("Enter")
-    page.idle()
+    page.idle(curves=True)
     assert page.answer("run:0")["options"]["healing_time"] == 200
     assert page.answer("locus:hopf")["options"]["healing_time"] == 200
     field.fill("many")
@@ -117,12 +117,12 @@ def test_si_units_are_the_same_point(slab, explored):
 def test_another_law_and_symmetry(slab, explored):
     page = explored(slab.address)
     page.idle()
-    page.page.get_by_label("Law").select_option("regularised-ageing")
+    page.page.get_by_label("Law", exact=True).select_option("regularised-ageing")
     page.idle()
     assert page.answer("run:0")["options"]["law"] == "regularised-ageing"
-    page.page.get_by_label("Law").select_option("spinodal")
+    page.page.get_by_label("Law", exact=True).select_option("spinodal")
     page.idle()
-    page.page.get_by_label("Symmetry").select_option("symmetric")
+    page.page.get_by_label("Symmetry", exact=True).select_option("symmetric")
     page.idle()
     assert page.answer("orbit:0")["object"]["result"]["orbit"]["symmetry"] == "symmetric"
 
@@ -196,6 +196,7 @@ def test_a_built_in_system_and_own_equations(slab, explored):
     page.page.get_by_role("button", name="Use these equations").click()
     page.idle()
     assert page.value("twinslip.model.parameters.map((p) => p.name)") == ["a", "b"]
+    page.idle(curves=True)
     # Hopf at b = 1 + a^2 (Prigogine and Lefever 1968).
     hopf = page.answer("branch:y:equilibria")
     rows = [dict(zip(hopf["columns"], row)) for row in hopf["rows"]]
@@ -220,7 +221,7 @@ def test_a_map_of_regimes(slab, explored):
     page = explored(slab.address)
     page.idle()
     page.pane("diagram").get_by_role("button", name="Map of regimes").click()
-    page.idle()
+    page.idle(curves=True)
     assert page.value("twinslip.diagram.description.cells !== null")
     page.shot("map")
 
@@ -232,7 +233,7 @@ def test_zooming_computes_the_curves_there(slab, explored):
     for _ in range(4):
         page.page.mouse.wheel(0, -200)
     page.page.wait_for_timeout(500)
-    page.idle()
+    page.idle(curves=True)
     lo, hi = page.value("twinslip.scene.ranges.driving")
     assert hi / lo < 1e6
     assert page.answer("locus:hopf")["options"]["in"].startswith(f"driving={lo:g}"[:12])
@@ -261,7 +262,7 @@ def test_addresses_of_nobody(slab, explored, hash):
 
 def test_pictures_and_numbers_are_taken_away(slab, explored):
     page = explored(slab.address)
-    page.idle()
+    page.idle(curves=True)
     for name in ["diagram", "run", "along-x", "along-y", "portrait", "returns", "spectrum"]:
         pane = page.pane(name)
 
@@ -288,6 +289,7 @@ def test_a_saved_page_needs_no_server(served, explored, tmp_path):
     page = explored(server.address)
     page.idle()
     page.click(100, 0.1)
+    page.idle(curves=True)
     html = page.downloaded(lambda: page.page.get_by_role("button", name="Save page").click())
     run = page.answer("run:0")
     server.close()
@@ -314,7 +316,7 @@ def test_two_clients_at_once(slab, explored):
 @pytest.mark.parametrize("width", [360, 768, 1280])
 def test_it_fits_phones_and_desktops(slab, explored, width):
     page = explored(slab.address, width=width)
-    page.idle()
+    page.idle(curves=True)
     assert page.value("document.documentElement.scrollWidth") <= width
     page.shot(f"wide-{width}")
     page.page.set_viewport_size({"width": 1000, "height": 700})
@@ -332,7 +334,7 @@ def test_dark(slab, explored):
 
 def test_labels_say_what_they_mean(slab, explored):
     page = explored(slab.address)
-    page.idle()
+    page.idle(curves=True)
     page.page.get_by_role("button", name="Glossary").click()
     glossary = page.page.locator("dialog[open]")
     assert "Hopf bifurcation" in glossary.inner_text()
@@ -374,14 +376,18 @@ def test_a_closed_page_stops_its_work(served, browser):
 
 
 def test_a_fit_brings_bands(slab, explored):
-    fit = pathlib.Path(__file__).parent / "fit.json"
+    fit = pathlib.Path(__file__).parents[1] / "data/fit-spinodal.json"
     page = explored(slab.address)
-    page.idle()
+    page.idle(curves=True)
     page.page.get_by_text("A fit (fit.json)").click()
     page.page.get_by_label("A fit to load").set_input_files(fit)
-    page.idle()
+    page.idle(curves=True)
     assert page.pane("bands").is_visible()
     assert page.answer("bands")["error"] is None
-    assert page.answer("map")["error"] is None
-    json.loads(fit.read_text())
+    known = json.loads(fit.read_text())["result"]["fit"]["parameters"]
+    assert page.value("twinslip.values().evolution_effect") == next(one["value"] for one in known if one["name"] == "evolution_effect")
+    page.pane("diagram").get_by_role("button", name="Map of regimes").click()
+    page.idle(curves=True)
+    probable = page.answer("map")
+    assert probable["error"] is None and any(name.startswith("probability_") for name in probable["columns"])
     page.shot("fit")

@@ -11,7 +11,7 @@ import { frameOf } from "./frame.js";
 import { download } from "./out.js";
 import { rangeAround } from "./panels.js";
 import { requests } from "./requests.js";
-import { fromAddress, History, parameterOf, rangeOf, sceneOf, toAddress, valuesAt, withAxes, withTold, withValue } from "./scene.js";
+import { fittedBy, fromAddress, History, parameterOf, rangeOf, sceneOf, toAddress, valuesAt, withAxes, withTold, withValue } from "./scene.js";
 
 /** After so many milliseconds without a move, what takes longer is asked too. */
 const SETTLED = 180;
@@ -21,8 +21,8 @@ const OVERDUE = 400;
 const PATIENCE = 20;
 /** Returns of the map, and those before. */
 const RETURNS = { returns: 600, skip: 400 };
-/** Cells of a map of regimes along each axis. */
-const CELLS = 24;
+/** Cells of a map of regimes along each axis; of a fit, whose map is one for each draw. */
+const CELLS = { one: 24, fit: 10 };
 /** Curves that take least come first. */
 const QUICK = ["pitchfork", "saddle-node", "hopf", "period-doubling", "orbit-pitchfork", "torus", "orbit-saddle-node"];
 
@@ -86,7 +86,7 @@ export class App {
     this.points = [0, 1].map((index) => new PointPanes(this, index));
     this.frame.fill(this);
     this.side.rebuild();
-    for (const pane of Object.values(this.alongs)) pane.clear();
+    for (const pane of [this.diagram, ...Object.values(this.alongs)]) pane.clear();
     this.show();
   }
 
@@ -217,15 +217,20 @@ export class App {
     this.change({ surface });
   }
 
-  setFit(text) {
+  /** Shows the law and the parameters of a fit, with the bands that its errors leave; null puts it away. */
+  async setFit(text) {
     if (text === null) return this.change({ fit: null });
-    try {
-      JSON.parse(text);
-    } catch {
-      return this.say("This file is no fit: it is no JSON. `twinslip fit -o fit.json` writes one.");
-    }
-    this.change({ fit: text });
-    return this.askMap();
+    const fit = fittedBy(text);
+    if (!fit) return this.say("This file is no fit of one state: `twinslip fit RECORD -o fit.json` writes one.");
+    const given = { law: fit.law, interfaces: this.model.interfaces ?? 2, si: true };
+    const model = await this.readModel(given);
+    if (!model) return null;
+    // The stiffness of the laboratory is not that of a fault.
+    const known = Object.entries(fit.values).filter(([name]) => parameterOf(model, name) && !["driving", "stiffness"].includes(name));
+    const begun = sceneOf(model, { ...given, ...(fit.values.reference_rate && { reference_rate: fit.values.reference_rate }) });
+    const scene = { ...begun, values: Object.fromEntries(known), fit: `${text.trimEnd()}\n`, theme: this.scene.theme };
+    this.setScene(this.changeModel(model, scene));
+    return null;
   }
 
   compare(on) {
@@ -244,14 +249,11 @@ export class App {
   /** A scene of before, of this system or another one. */
   async restore(scene) {
     const other = JSON.stringify(scene.given) !== JSON.stringify(this.scene.given);
-    if (other) {
-      const model = await this.readModel(scene.given);
-      if (!model) return;
-      this.model = model;
-    }
+    const model = other ? await this.readModel(scene.given) : this.model;
+    if (!model) return;
+    if (other) this.changeModel(model, scene);
     this.scene = scene;
     this.remember();
-    if (other) this.forget();
     this.show();
     this.recompute({ settled: true, curves: true });
   }
@@ -269,12 +271,9 @@ export class App {
     const model = await this.readModel(given);
     if (!model) return;
     const { scene } = this;
-    this.model = model;
-    const next = { ...scene, given };
+    const next = { ...scene, given, start: null, portrait: null, surface: null };
     const keeps = !anew && this.fits(next, model);
-    const begun = { ...sceneOf(model, given), theme: scene.theme };
-    this.forget();
-    this.setScene(keeps ? { ...next, start: null, portrait: null, surface: null } : begun);
+    this.setScene(this.changeModel(model, keeps ? next : { ...sceneOf(model, given), theme: scene.theme }));
   }
 
   /** Dimensionless or SI: the same point in other units. */
@@ -293,9 +292,7 @@ export class App {
     );
     const { scene } = this;
     const points = scene.points.map(converted);
-    this.model = to;
-    this.forget();
-    this.setScene({
+    this.setScene(this.changeModel(to, {
       ...scene,
       given: { ...plain, ...(si && { si: true }) },
       values: converted(Object.fromEntries(names.map((name) => [name, scene.values[name] ?? scene.given[name]]).filter(([, x]) => typeof x === "number"))),
@@ -305,7 +302,7 @@ export class App {
       until: null,
       surface: null,
       program: "",
-    });
+    }));
   }
 
   /** The number that a text with a unit is, by the program. */
@@ -317,14 +314,16 @@ export class App {
     return parameterOf(answer.object, name)?.value ?? null;
   }
 
-  /** Nothing of another system is shown. */
-  forget() {
+  /** Another system, or the same in other units: nothing of the one before is shown. */
+  changeModel(model, scene) {
+    Object.assign(this, { model, scene });
     this.engine.stopWhere((slot) => slot !== "model");
     this.diagram.clear();
     this.alongs.x.clear();
     this.alongs.y.clear();
     this.side.rebuild();
     this.curvesOf = null;
+    return scene;
   }
 
   // What is asked.
@@ -482,7 +481,7 @@ export class App {
   }
 
   askMap() {
-    const { command, options } = requests.regimes(this.scene, this.model, CELLS);
+    const { command, options } = requests.regimes(this.scene, this.model, this.scene.fit ? CELLS.fit : CELLS.one);
     this.engine.ask("map", command, options, { background: true, first: true, onUpdate: (answer) => this.diagram.takeMap(answer) });
   }
 

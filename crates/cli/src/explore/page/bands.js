@@ -16,13 +16,12 @@ export class BandsPane extends Pane {
   ask() {
     const { app } = this;
     const { scene, model } = app;
-    const ensemble = requests.ensembleOf(scene);
     const what = this.choice.value;
     const asked = {
-      law: () => ({ command: "law", options: { ...requests.law(scene, model, scene.active).options, ensemble } }),
+      law: () => this.withFit(requests.law(scene, model, scene.active)),
       equilibria: () => requests.bands(scene, model, scene.active),
-      x: () => this.branch("x", ensemble),
-      y: () => this.branch("y", ensemble),
+      x: () => this.branch("x"),
+      y: () => this.branch("y"),
     }[what]();
     app.engine.ask("bands", asked.command, asked.options, {
       background: true,
@@ -33,10 +32,13 @@ export class BandsPane extends Pane {
     });
   }
 
-  branch(which, ensemble) {
+  branch(which) {
     const { scene, model } = this.app;
     const along = scene.axes[which] ?? scene.axes.x;
-    const { command, options } = requests.branch(scene, model, scene.active, "equilibria", along);
-    return { command, options: { ...options, ensemble, plot: true } };
+    return this.withFit(requests.branch(scene, model, scene.active, "equilibria", along));
+  }
+
+  withFit({ command, options }) {
+    return { command, options: { ...requests.withFit(this.app.scene, options), plot: true } };
   }
 }

@@ -1,6 +1,7 @@
 // The commands behind the panes: for each, its name and options at a point of a scene.
 
-import { parameterOf, rangeOf, valuesAt } from "./scene.js";
+import { changesOf } from "./program.js";
+import { fittedBy, parameterOf, rangeOf, valuesAt } from "./scene.js";
 
 /** Options that say what is studied; all else says how. */
 const MODEL_OPTIONS = [
@@ -117,13 +118,13 @@ function regimes(scene, model, cells) {
   const options = { ...systemOptions(scene, model, scene.active, [x, y]), grid: y ? [grid(x), grid(y)] : [grid(x)], plot: true };
   const surface = scene.surface ?? model.surface;
   if (surface && model.kind === "system") options.surface = surface;
-  if (scene.fit) options.ensemble = ensembleOf(scene);
+  if (scene.fit) return { command: "sweep", options: withFit(scene, options) };
   return { command: "sweep", options };
 }
 
 /** Equilibria with the bands that a fit leaves. */
 function bands(scene, model, index) {
-  return { command: "equilibria", options: { ...systemOptions(scene, model, index), ensemble: ensembleOf(scene), plot: true } };
+  return { command: "equilibria", options: { ...withFit(scene, systemOptions(scene, model, index)), plot: true } };
 }
 
 /** The steady-state friction of one interface. */
@@ -132,9 +133,11 @@ function law(scene, model, index) {
   return { command: "law", options };
 }
 
-/** The fit as `--ensemble` takes it: its text, and how many draws. */
-function ensembleOf(scene) {
-  return `${scene.fit.trimEnd()}\n:${scene.draws}`;
+/** The same options with the law and the parameters of the fit, and their errors: its text, and how many draws. */
+function withFit(scene, options) {
+  const { values } = fittedBy(scene.fit);
+  const all = Object.entries(options).filter(([name]) => !(name in values) && name !== "law" && name !== "si");
+  return { ...Object.fromEntries(all), ensemble: `${scene.fit.trimEnd()}\n:${scene.draws}` };
 }
 
 /**
@@ -142,22 +145,29 @@ function ensembleOf(scene) {
  */
 function untilOf(scene, equilibriaAnswer, orbitAnswer) {
   if (scene.until) return scene.until;
+  // All changes of a program are shown, and what follows the last.
+  const changed = 1.2 * Math.max(0, ...(changesOf(scene.program) ?? []).map(({ to }) => to));
+  return rounded(Math.max(changed, durationOf(equilibriaAnswer, orbitAnswer)), changed > 0);
+}
+
+function durationOf(equilibriaAnswer, orbitAnswer) {
   const period = orbitAnswer?.result?.orbit?.period;
   const turns = typeof period === "number" ? period : period?.value;
-  if (turns > 0) return rounded(8 * turns);
+  if (turns > 0) return 8 * turns;
   const first = equilibriaAnswer?.result?.equilibria?.[0]?.eigenvalues ?? [];
   const imaginary = Math.max(0, ...first.map(([, im]) => Math.abs(im)));
   const real = first.map(([re]) => Math.abs(re)).filter((re) => re > 0);
   const slow = real.length ? 8 / Math.min(...real) : 0;
   const turning = imaginary > 0 ? (12 * 2 * Math.PI) / imaginary : 0;
-  if (slow && turning) return rounded(Math.min(Math.max(slow, turning), 10 * turning));
-  return rounded(slow || turning || 20);
+  if (slow && turning) return Math.min(Math.max(slow, turning), 10 * turning);
+  return slow || turning || 20;
 }
 
 /** All of them. */
-export const requests = { modelOptions, equilibria, orbit, run, section, branch, locus, regimes, bands, law, ensembleOf, untilOf };
+export const requests = { modelOptions, equilibria, orbit, run, section, branch, locus, regimes, bands, law, withFit, untilOf };
 
-/** Two digits are enough for a time that is only shown. */
-function rounded(x) {
-  return Number(x.toPrecision(2));
+/** Two digits are enough for a time that is only shown; `up` rounds to more. */
+function rounded(x, up = false) {
+  const unit = 10 ** (Math.floor(Math.log10(x)) - 1);
+  return up ? Number((Math.ceil(x / unit) * unit).toPrecision(2)) : Number(x.toPrecision(2));
 }

@@ -122,6 +122,19 @@ export class History {
   }
 }
 
+/** The law of a fit and all its values, fitted and fixed; null for a text that is no fit. */
+export function fittedBy(text) {
+  let fit = null;
+  try {
+    fit = JSON.parse(text).result.fit;
+  } catch {
+    return null;
+  }
+  if (!fit || !isText(fit.law) || !Array.isArray(fit.parameters) || fit.states > 1) return null;
+  const fitted = fit.parameters.map(({ name, value }) => [name, value]);
+  return { law: fit.law, values: numbersOf(Object.fromEntries([...Object.entries(fit.fixed ?? {}), ...fitted])) };
+}
+
 /** The scene as the part of an address behind #. */
 export function toAddress(scene) {
   return `#scene=${encodeURIComponent(JSON.stringify(scene))}`;
