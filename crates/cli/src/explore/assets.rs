@@ -2,7 +2,7 @@
 
 use include_dir::{Dir, include_dir};
 use std::borrow::Cow;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The environment variable that names a folder with the files of the page, which are then read at each request: for those who change
 /// the page.
@@ -13,29 +13,45 @@ pub const MAIN: &str = "main.js";
 /// The files as the program carries them.
 static PAGE: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/src/explore/page");
 
-/// Names and texts of all modules.
+/// Paths from the folder of the page, and texts, of all modules.
 pub fn modules() -> Vec<(String, Cow<'static, str>)> {
-    let named = |name: &str| name.ends_with(".js").then(|| name.to_owned());
-    let mut all: Vec<(String, Cow<'static, str>)> = match folder() {
-        None => PAGE
-            .files()
-            .filter_map(|file| {
-                let name = named(file.path().to_str()?)?;
-                Some((name, Cow::Borrowed(file.contents_utf8()?)))
-            })
-            .collect(),
-        Some(folder) => std::fs::read_dir(folder)
-            .into_iter()
-            .flatten()
-            .filter_map(|file| {
-                let file = file.ok()?;
-                let name = named(file.file_name().to_str()?)?;
-                Some((name, Cow::Owned(std::fs::read_to_string(file.path()).ok()?)))
-            })
-            .collect(),
-    };
+    let mut all = Vec::new();
+    match folder() {
+        None => add_carried(&PAGE, &mut all),
+        Some(folder) => add_read(&folder, "", &mut all),
+    }
     all.sort();
     all
+}
+
+fn is_module(name: &str) -> bool {
+    name.ends_with(".js")
+}
+
+fn add_carried(folder: &Dir<'static>, all: &mut Vec<(String, Cow<'static, str>)>) {
+    for file in folder.files() {
+        // Folders are named with / on every system.
+        let name = file.path().to_string_lossy().replace('\\', "/");
+        if let Some(text) = file.contents_utf8().filter(|_| is_module(&name)) {
+            all.push((name, Cow::Borrowed(text)));
+        }
+    }
+    folder.dirs().for_each(|inside| add_carried(inside, all));
+}
+
+fn add_read(folder: &Path, above: &str, all: &mut Vec<(String, Cow<'static, str>)>) {
+    for file in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let (path, name) = (file.path(), file.file_name());
+        let name = format!("{above}{}", name.to_string_lossy());
+        if path.is_dir() {
+            add_read(&path, &format!("{name}/"), all);
+        } else if let Some(text) = std::fs::read_to_string(&path)
+            .ok()
+            .filter(|_| is_module(&name))
+        {
+            all.push((name, Cow::Owned(text)));
+        }
+    }
 }
 
 /// The page, as a text in which the parts that begin it stand where a server or a file puts its own.

@@ -1,6 +1,6 @@
 //! One script of many modules: each becomes a function that returns what it exports, and the names that it imports are looked up in what
 //! the others have returned. The modules of the page keep to the few forms that are read here, each on a line of its own:
-//! `import { a, b as c } from "./x.js";` and `export [async] function|const|class NAME`.
+//! `import { a, b as c } from "./x.js";`, or from `"../folder/x.js"`, and `export [async] function|const|class NAME`.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -96,6 +96,24 @@ fn add<'a>(
     Ok(())
 }
 
+/// The module at a path relative to another one, from the folder of all; none for a path that begins with neither `./` nor `../`.
+fn beside(name: &str, path: &str) -> Option<String> {
+    let mut folders: Vec<&str> = name.split('/').collect();
+    folders.pop();
+    let mut parts = path.split('/').peekable();
+    parts.peek().filter(|first| [".", ".."].contains(first))?;
+    for part in parts {
+        match part {
+            "." => {}
+            ".." => {
+                folders.pop()?;
+            }
+            part => folders.push(part),
+        }
+    }
+    Some(folders.join("/"))
+}
+
 fn module(name: &str, text: &str) -> Result<Module, String> {
     let mut module = Module {
         body: String::with_capacity(text.len()),
@@ -110,10 +128,11 @@ fn module(name: &str, text: &str) -> Result<Module, String> {
                 .strip_prefix('{')
                 .and_then(|rest| rest.split_once('}'));
             let file = parts
-                .and_then(|(_, from)| from.trim().strip_prefix("from \"./")?.strip_suffix("\";"));
+                .and_then(|(_, from)| from.trim().strip_prefix("from \"")?.strip_suffix("\";"))
+                .and_then(|path| beside(name, path));
             match (parts, file) {
                 (Some((names, _)), Some(file)) => {
-                    module.imports.push((file.to_owned(), names.to_owned()));
+                    module.imports.push((file, names.to_owned()));
                 }
                 _ => return wrong("this form of import is not known"),
             }

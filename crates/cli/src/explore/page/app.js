@@ -1,15 +1,15 @@
 // The page as a whole: the scene, its panes, and what is asked when the scene changes.
 
-import { BranchPane } from "./branches.js";
-import { DiagramPane } from "./diagram.js";
-import { ParametersPane } from "./parameters.js";
-import { BandsPane } from "./bands.js";
-import { PortraitPane, ReturnsPane, RunPane } from "./runs.js";
-import { SpectrumPane } from "./spectrum.js";
-import { VerdictPane } from "./verdict.js";
+import { BranchPane } from "./panes/branches.js";
+import { DiagramPane } from "./panes/diagram.js";
+import { ParametersPane } from "./panes/parameters.js";
+import { BandsPane } from "./panes/bands.js";
+import { PortraitPane, ReturnsPane, RunPane } from "./panes/runs.js";
+import { SpectrumPane } from "./panes/spectrum.js";
+import { VerdictPane } from "./panes/verdict.js";
 import { frameOf } from "./frame.js";
 import { download } from "./out.js";
-import { rangeAround } from "./panels.js";
+import { rangeAround } from "./panes/panels.js";
 import { requests } from "./requests.js";
 import { fittedBy, fromAddress, History, parameterOf, rangeOf, sceneOf, toAddress, valuesAt, withAxes, withTold, withValue } from "./scene.js";
 

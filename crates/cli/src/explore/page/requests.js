@@ -1,6 +1,6 @@
 // The commands behind the panes: for each, its name and options at a point of a scene.
 
-import { changesOf } from "./program.js";
+import { changesOf } from "./panes/program.js";
 import { fittedBy, parameterOf, rangeOf, valuesAt } from "./scene.js";
 
 /** Options that say what is studied; all else says how. */

@@ -1,8 +1,8 @@
 // What a fit leaves undecided: the law, or branches of equilibria, with bands.
 
-import { element } from "./elements.js";
+import { element } from "../elements.js";
 import { Pane } from "./pane.js";
-import { requests } from "./requests.js";
+import { requests } from "../requests.js";
 
 export class BandsPane extends Pane {
   constructor(app) {

@@ -1,10 +1,10 @@
 // The diagram of two parameters: curves of bifurcations as they are found, a map of regimes, and the points that are looked at.
 
-import { button, element } from "./elements.js";
+import { button, element } from "../elements.js";
 import { Pane, short, themeOf } from "./pane.js";
 import { axisLabel, COLOURS, lineOf, markOf, panelOf } from "./panels.js";
-import { parameterOf, rangeOf } from "./scene.js";
-import { explained } from "./glossary.js";
+import { parameterOf, rangeOf } from "../scene.js";
+import { explained } from "../glossary.js";
 
 /** What curves of each kind are called, with the label of their points, and their colours. */
 const KINDS = {

@@ -1,8 +1,8 @@
 // The side of the page where the system and its parameters are chosen.
 
-import { button, element, labelled } from "./elements.js";
+import { button, element, labelled } from "../elements.js";
 import { short } from "./pane.js";
-import { parameterOf, rangeOf, valuesAt } from "./scene.js";
+import { parameterOf, rangeOf, valuesAt } from "../scene.js";
 import { ProgramField } from "./program.js";
 
 /** Steps of a slider. */

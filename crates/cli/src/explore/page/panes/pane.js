@@ -1,9 +1,9 @@
 // A pane: a heading, what is being computed, a drawing, words about it, and a menu of what can be taken away.
 
-import { CanvasSurface, pngOf, svgOf } from "./surface.js";
-import { draw } from "./draw.js";
-import { commandLine, copied, csv, download, filesOf, python, toml } from "./out.js";
-import { element } from "./elements.js";
+import { CanvasSurface, pngOf, svgOf } from "../draw/surface.js";
+import { draw } from "../draw/draw.js";
+import { commandLine, copied, csv, download, filesOf, python, toml } from "../out.js";
+import { element } from "../elements.js";
 
 let panes = 0;
 

@@ -1,10 +1,10 @@
 // The run in time, its portrait, and the return map, each at one of the points.
 
-import { button, element, labelled } from "./elements.js";
+import { button, element, labelled } from "../elements.js";
 import { Pane, short } from "./pane.js";
 import { COLOURS, dotsOf, lineOf, markOf, panelOf, rangeAround } from "./panels.js";
-import { Portrait3d } from "./turn.js";
-import { explained } from "./glossary.js";
+import { Portrait3d } from "../solid/turn.js";
+import { explained } from "../glossary.js";
 
 /** The first column of panels of a picture: what is drawn against time. */
 function firstColumn(picture) {

@@ -1,9 +1,9 @@
 // The bifurcation diagram along one parameter through the point: equilibria, and periodic orbits by their extremes.
 
-import { element } from "./elements.js";
+import { element } from "../elements.js";
 import { Pane, short } from "./pane.js";
 import { axisLabel, COLOURS, lineOf, markOf, panelOf, rangeAround } from "./panels.js";
-import { parameterOf, rangeOf } from "./scene.js";
+import { parameterOf, rangeOf } from "../scene.js";
 import { specialOf } from "./diagram.js";
 
 const STROKES = { stable: "solid", unstable: "dashed" };

@@ -1,6 +1,6 @@
 /** A portrait in three dimensions that the reader turns. */
 
-import { CanvasSurface, SvgSurface } from "./surface.js";
+import { CanvasSurface, SvgSurface } from "../draw/surface.js";
 import { drawSpace, Space, SpaceView } from "./space.js";
 
 /** The direction of view to begin with, in degrees. */

@@ -1,8 +1,8 @@
 /** The box around curves in three dimensions, with its axes. */
 
-import { mixColours } from "./palette.js";
-import { ticksOf } from "./ticks.js";
-import { wordsWidth } from "./words.js";
+import { mixColours } from "../draw/palette.js";
+import { ticksOf } from "../draw/ticks.js";
+import { wordsWidth } from "../draw/words.js";
 
 /** Edges shorter than this have no numbers. */
 const SHORT = 30;

@@ -1,8 +1,8 @@
 // A loading program: the driving velocity against time, drawn by hand or written as the program takes it.
 
-import { button, element } from "./elements.js";
+import { button, element } from "../elements.js";
 import { short, themeOf } from "./pane.js";
-import { rangeOf, valuesAt } from "./scene.js";
+import { rangeOf, valuesAt } from "../scene.js";
 
 const HEIGHT = 110;
 const MARGIN = 8;

@@ -1,6 +1,6 @@
 // Eigenvalues of the equilibria and multipliers of the orbit, in the complex plane, with their bounds.
 
-import { element } from "./elements.js";
+import { element } from "../elements.js";
 import { bounded, Pane } from "./pane.js";
 import { COLOURS, lineOf, markOf, panelOf, rangeAround } from "./panels.js";
 

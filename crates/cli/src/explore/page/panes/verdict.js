@@ -1,9 +1,9 @@
 // What happens at a point, in words: equilibria, the orbit, what runs settle on, and where a verdict is undecided, why.
 
-import { element } from "./elements.js";
+import { element } from "../elements.js";
 import { bounded, Pane, short } from "./pane.js";
-import { parameterOf, valuesAt } from "./scene.js";
-import { explained, term } from "./glossary.js";
+import { parameterOf, valuesAt } from "../scene.js";
+import { explained, term } from "../glossary.js";
 
 const COUNT = ["No", "One", "Two", "Three", "Four", "Five", "Six", "Seven", "Eight", "Nine"];
 

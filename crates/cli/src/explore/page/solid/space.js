@@ -1,9 +1,9 @@
 /** Curves in three dimensions as they are seen from a direction, without perspective, in a box with axes. */
 
 import { drawBox } from "./box.js";
-import { mixColours, paletteOf } from "./palette.js";
-import { drawSymbol } from "./symbols.js";
-import { wordsWidth } from "./words.js";
+import { mixColours, paletteOf } from "../draw/palette.js";
+import { drawSymbol } from "../draw/symbols.js";
+import { wordsWidth } from "../draw/words.js";
 
 /** Curves are drawn in so many layers from back to front, each with its own look. */
 const LAYERS = 8;
