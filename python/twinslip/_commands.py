@@ -108,10 +108,10 @@ class Model:
             All input and output in SI units; implied by a value with a unit, such as 10um, 50MPa,
             1nm/s or 500year
         slip_length : float or str, optional
-            With ``si``: L in m [default: 0.9e-6]
+            With ``si``: slip length L in m [default: 0.9e-6]
         normal_stress : float or str, optional
-            With ``si``: sigma in Pa; it only scales stress and stiffness, and the paper gives none
-            [default: 1e6]
+            With ``si``: normal stress sigma in Pa; it only scales stress and stiffness, and the
+            paper gives none [default: 1e6]
         reference_rate : float or str, optional
             With ``si``: V* in m/s [default: 1e-6]
         time_unit : str, optional

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Optional, Union
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 from . import _words
 from ._commands import Commands, Model
 from ._errors import InputError
+
+if TYPE_CHECKING:
+    from ._explore import Explorer
 
 __all__ = ["System"]
 
@@ -132,6 +135,34 @@ class System(Commands, Model):
         named = {name: value for name, value in given.items() if name in known}
         others = {name: value for name, value in given.items() if name not in known}
         return type(self)(**named, **others)
+
+    def explore(self, *, height: Union[float, str, None] = None) -> Explorer:
+        """The page of ``twinslip explore`` for this system, as a widget of a notebook; it needs anywidget.
+
+        A click in the diagram of two parameters computes the run, the portrait, the return map, the spectrum and the verdict of that
+        point. The kernel answers: while a cell runs, the page waits.
+
+        Parameters
+        ----------
+        height : float or str, optional
+            Height of the widget in pixels, or as a length of CSS such as ``"80vh"``; the page scrolls in it [default: that of the page].
+
+        Returns
+        -------
+        Explorer
+            An ``anywidget.AnyWidget``, which a notebook shows as the value of a cell. To show it again, or to close it by ``close()``,
+            stops what is being computed for it.
+
+        Raises
+        ------
+        ImportError
+            If anywidget is not installed.
+        ValueError
+            If the input is to blame; its ``field`` is the argument.
+        """
+        from ._explore import Explorer
+
+        return Explorer([word for spoken in self._spoken.values() for word in spoken], height)
 
     def _call(self, command: str, own: dict[str, Any]) -> tuple[list[str], Optional[bool]]:
         progress: Optional[bool] = own.pop("progress")

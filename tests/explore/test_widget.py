@@ -1,8 +1,9 @@
 """The page as the widget of a notebook: its module in a page of another kind, wired to ``System.explore()`` of Python."""
 
-import json
 import queue
 import sys
+import threading
+import time
 
 import pytest
 from conftest import ROOT
@@ -14,6 +15,8 @@ twinslip = pytest.importorskip("twinslip")
 import comm  # noqa: E402
 from comm.base_comm import BaseComm  # noqa: E402
 
+#: A page that has not come so far by then hangs.
+PATIENCE = 120.0
 #: A page with elements and styles of its own, which a widget must leave as they are.
 NOTEBOOK = """<!DOCTYPE html>
 <html><head><style>body { margin: 7px; }</style></head>
@@ -49,7 +52,7 @@ async ({ script, style, begin }) => {
 
 #: What the styles of the page come to in the elements of the notebook.
 STYLES = """
-() => [...document.querySelectorAll("html, body, body > :not(#cell), main *")].map((element) => {
+() => [...document.querySelectorAll("html, body, body > :not(#cell), body > :not(#cell) *")].map((element) => {
   const style = getComputedStyle(element);
   return [element.tagName, ...[...style].filter((name) => !/block-size|inline-size|height|width|origin/.test(name)).map((name) => `${name}: ${style.getPropertyValue(name)}`)];
 })
@@ -57,10 +60,10 @@ STYLES = """
 
 
 class FakeComm(BaseComm):
-    """Keeps what the widget sends until the page takes it."""
+    """Keeps what the widget sends until the page takes it, the objects of answers, and how they have ended."""
 
     def __init__(self, *arguments, **options):
-        self.sent = queue.Queue()
+        self.sent, self.ended, self.objects = queue.Queue(), {}, {}
         super().__init__(*arguments, **options)
 
     def publish_msg(self, msg_type, data=None, *_, **__):
@@ -70,7 +73,12 @@ class FakeComm(BaseComm):
     def take(self):
         messages = []
         while not self.sent.empty():
-            messages.append(self.sent.get())
+            message = self.sent.get()
+            messages.append(message)
+            self.objects.update({message["id"]: line["object"] for line in message["lines"] if "object" in line})
+            last = message["lines"][-1]
+            if "ended" in last or "error" in last:
+                self.ended[message["id"]] = last
         return messages
 
 
@@ -79,7 +87,7 @@ class Notebook:
 
     def __init__(self, page, widget, width):
         self.page, self.widget, self.asked, self.wrong = page, widget, [], []
-        page.on("pageerror", lambda error: self.wrong.append(f"{error}"))
+        page.on("pageerror", lambda error: self.wrong.append(f"{error} {error.stack}"))
         page.on("console", lambda message: self.wrong.append(message.text) if message.type in ("error", "warning") else None)
         page.expose_function("toKernel", self.receive)
         page.expose_function("fromKernel", widget.comm.take)
@@ -87,21 +95,31 @@ class Notebook:
         page.goto("http://notebook.test/")
         self.before = page.evaluate(STYLES)
         page.evaluate(MODEL, {"script": widget._esm, "style": widget._css, "begin": widget.begin})
+        self.verdict = page.locator(".pane-verdict .headline").first
 
     def receive(self, content):
+        """Hands a message of the page to the widget."""
         self.asked.append(content)
         self.widget.comm.handle_msg({"content": {"data": {"method": "custom", "content": content}}, "buffers": []})
 
-    def idle(self):
-        self.page.locator(".twinslip[data-busy=true]").wait_for(state="attached")
-        # Nothing for a while: between two answers it is not busy either.
-        for _ in range(3):
-            self.page.locator(".twinslip[data-busy=false]").wait_for(state="attached", timeout=120_000)
-            self.page.wait_for_timeout(300)
+    def wait(self, come):
+        """Waits until this is true, while messages go to and fro."""
+        end = time.monotonic() + PATIENCE
+        while not come():
+            assert time.monotonic() < end, self.page.inner_text("body")[:3000]
+            self.page.wait_for_timeout(50)
 
-    def last(self, command):
-        """The options that a command was last asked with."""
-        return [one["options"] for one in self.asked if one["type"] == "ask" and one["command"] == command][-1]
+    def questions(self, command):
+        """All that this command was asked."""
+        return [one for one in self.asked if one["type"] == "ask" and one["command"] == command]
+
+    def answered(self, command, count=1):
+        """Waits for the answer to the last question for a command, which was asked so many times at least; its options."""
+        is_there = lambda: len(self.questions(command)) >= count and self.questions(command)[-1]["id"] in self.widget.comm.ended
+        self.wait(is_there)
+        self.page.wait_for_timeout(300)
+        self.wait(is_there)
+        return self.questions(command)[-1]["options"]
 
 
 @pytest.fixture
@@ -130,71 +148,81 @@ SLAB = twinslip.System(driving=10, stiffness=0.14)
 
 def test_it_shows_the_diagram_and_a_click_answers(notebook):
     page = notebook(SLAB)
-    page.idle()
-    assert {"driving": 10, "stiffness": 0.14}.items() <= page.last("orbit").items()
-    headline = page.page.locator(".pane-verdict .headline")
-    assert headline.inner_text().lower() == "periodic"
+    page.answered("integrate")
+    assert {"driving": 10, "stiffness": 0.14}.items() <= page.answered("orbit").items()
+    assert page.verdict.inner_text().lower() == "periodic"
     diagram = page.page.locator(".pane-diagram canvas").first
     assert diagram.get_attribute("aria-label")
+    asked = len(page.questions("orbit"))
     box = diagram.bounding_box()
-    page.page.mouse.click(box["x"] + 0.9 * box["width"], box["y"] + 0.3 * box["height"])
-    page.idle()
-    clicked = page.last("orbit")
-    assert clicked["driving"] > 20 and clicked["stiffness"] > 0.14
+    page.page.mouse.click(box["x"] + 0.9 * box["width"], box["y"] + 0.2 * box["height"])
+    clicked = page.answered("orbit", asked + 1)
+    assert clicked["driving"] > 100 and clicked["stiffness"] > 0.14
     there = SLAB.replace(driving=clicked["driving"], stiffness=clicked["stiffness"])
-    equilibrium = next(iter(there.equilibria()))
-    words = {"stable": "steady", "unstable": "periodic"}[str(equilibrium.verdict)]
-    assert headline.inner_text().lower() in (words, "chaotic", "steady")
-    # Nothing of it is in the address of the notebook.
+    page.answered("equilibria", asked + 1)
+    shown = page.widget.comm.objects[page.questions("equilibria")[-1]["id"]]["result"]["equilibria"]
+    assert [one["stress"]["value"] for one in shown] == [one.stress.value for one in there.equilibria()]
+    page.wait(lambda: page.verdict.inner_text().lower() == "steady")
+    # The address is the notebook's.
     assert page.page.url == "http://notebook.test/"
 
 
 def test_the_notebook_stays_as_it_is(notebook):
     page = notebook(SLAB)
-    page.idle()
+    page.answered("orbit")
     page.page.get_by_role("button", name="Theme").click()
-    page.page.wait_for_timeout(200)
+    page.page.get_by_role("button", name="Glossary").click()
+    page.page.locator(".twinslip dialog[open]").get_by_role("button", name="Close").click()
     assert page.page.evaluate(STYLES) == page.before
     assert page.page.evaluate("Object.keys(document.documentElement.dataset)") == []
 
 
+def test_its_theme_is_that_of_the_notebook(notebook):
+    page = notebook(SLAB)
+    page.answered("equilibria")
+    ink = "getComputedStyle(document.querySelector('.twinslip')).getPropertyValue('--dark').trim()"
+    assert page.page.evaluate(ink) == "0"
+    page.page.evaluate("document.body.dataset.jpThemeLight = 'false'")
+    for _ in range(3):
+        page.page.get_by_role("button", name="Theme").click()
+    assert page.page.get_by_role("button", name="Theme").inner_text() == "Theme: auto"
+    assert page.page.evaluate(ink) == "1"
+
+
 def test_columns_follow_the_width_of_the_cell(notebook):
-    wide, narrow = notebook(SLAB, 1300), notebook(SLAB, 500)
-    for page, columns in [(wide, 3), (narrow, 1)]:
-        page.idle()
+    for width, columns in [(1300, 3), (900, 2), (500, 1)]:
+        page = notebook(SLAB, width)
+        page.answered("equilibria")
         tracks = page.page.evaluate("getComputedStyle(document.querySelector('.twinslip main')).gridTemplateColumns")
         assert len(tracks.split()) == columns
-        width = page.page.evaluate("document.querySelector('.twinslip').scrollWidth - document.querySelector('.twinslip').clientWidth")
-        assert width <= 0
+        assert page.page.evaluate("(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth)(document.querySelector('.twinslip'))") <= 0
 
 
-def test_leaving_stops_and_two_views_do_not_mix(notebook):
+def test_a_view_that_is_left_stops(notebook):
     page = notebook(SLAB)
-    page.page.wait_for_timeout(300)
+    page.answered("model")
+    page.wait(lambda: page.questions("locus"))
     page.page.evaluate("leave()")
     page.page.wait_for_timeout(500)
     asked = {one["id"] for one in page.asked if one["type"] == "ask"}
     stopped = {one["id"] for one in page.asked if one["type"] == "stop"}
-    assert stopped and stopped <= asked
+    assert stopped and asked - stopped <= set(page.widget.comm.ended)
     assert page.page.evaluate("listeners.size") == 0
+    assert threads() == []
+    # The names of its questions are its own: another view has others.
     again = notebook(SLAB)
-    again.idle()
+    again.answered("model")
     assert not asked & {one["id"] for one in again.asked}
 
 
-def test_an_error_is_told(notebook):
+def threads():
+    return [thread for thread in threading.enumerate() if thread.name == "twinslip explore"]
+
+
+def test_what_is_wrong_is_told_on_the_page(notebook):
     page = notebook(twinslip.System.from_file("lorenz"))
-    page.idle()
-    page.receive({"type": "ask", "id": "other", "command": "integrate", "options": {"system": "/etc/passwd", "until": 1}})
-    [message] = [one for one in iter_messages(page) if one["id"] == "other"]
-    assert "none of those that are built in" in json.dumps(message)
-
-
-def iter_messages(page):
-    """What comes for others than the page, which does not ask while it is not looked at."""
-    kept = []
-    end = 100
-    while not any(one["id"] == "other" for one in kept) and end:
-        kept += page.widget.comm.take()
-        end -= 1
-    return kept
+    page.answered("integrate")
+    field = page.page.get_by_label("Start")
+    field.fill("1, 2")
+    field.press("Enter")
+    page.wait(lambda: page.page.locator(".problem:visible, .message:visible").count())
