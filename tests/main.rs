@@ -32,6 +32,7 @@ mod cvode_integrator;
 mod damping;
 mod damping_derivatives;
 mod derivatives;
+mod description;
 mod difference_chart;
 mod dimensions;
 mod double_double;
@@ -48,6 +49,14 @@ mod estimates;
 mod events;
 #[cfg(feature = "explore")]
 mod explore_answers;
+#[cfg(feature = "explore")]
+mod explore_hostile;
+#[cfg(feature = "explore")]
+mod explore_queue;
+#[cfg(feature = "explore")]
+mod explore_refused;
+#[cfg(feature = "explore")]
+mod explore_starts;
 mod figures_of_laws;
 mod fit;
 mod fit_command;

@@ -1,10 +1,12 @@
 //! The server of `twinslip explore`, and a client of it.
 
 use super::program;
+use crate::common::ROOT;
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
-use std::process::{Child, Stdio};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
 /// Nobody waits longer for an answer.
@@ -62,13 +64,23 @@ impl Answer {
 impl Server {
     /// A server that was started with these arguments.
     pub fn start(arguments: &[&str]) -> Self {
-        let mut child = program()
-            .args(["explore", "--no-browser"])
-            .args(arguments)
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .expect("it starts");
+        Self::start_in(Path::new(ROOT), arguments)
+    }
+
+    /// The same in another folder.
+    pub fn start_in(folder: &Path, arguments: &[&str]) -> Self {
+        Self::of(
+            program()
+                .current_dir(folder)
+                .args(["explore", "--no-browser"])
+                .args(arguments),
+        )
+    }
+
+    /// The server that this command starts.
+    pub fn of(command: &mut Command) -> Self {
+        let child = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn();
+        let mut child = child.expect("it starts");
         let mut line = String::new();
         let out = child.stdout.take().expect("a pipe");
         BufReader::new(out)

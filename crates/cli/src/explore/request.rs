@@ -169,6 +169,7 @@ fn texts(name: &str, option: &OptionInfo, value: &Value) -> Result<Vec<Option<St
         }
         OptionKind::Text if TEXTS.contains(&plain) || MORE_TEXTS.contains(&plain) => match value {
             Value::Bool(true) if plain == "crosscheck" => Ok(vec![None]),
+            Value::Array(_) if option.positional => wrong(name, "must be a word"),
             Value::Array(values) if values.len() > MOST_VALUES => {
                 wrong(name, format!("has more than {MOST_VALUES} values"))
             }

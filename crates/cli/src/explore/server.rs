@@ -9,8 +9,8 @@ use super::save::{BEGIN, begin_element, in_script, saved_page};
 use super::work::{self, Work, begin, too_many_waiting};
 use super::{assets, bundle, token};
 use crate::failure::Failure;
-use http_body_util::{BodyExt, Limited};
-use hyper::body::{Bytes, Incoming};
+use http_body_util::{BodyExt, LengthLimitError, Limited};
+use hyper::body::{Body, Bytes, Incoming};
 use hyper::server::conn::http1;
 use hyper::service::service_fn;
 use hyper::{HeaderMap, Method, Request, StatusCode, header};
@@ -347,13 +347,17 @@ async fn body(
             "the body must be application/json",
         ));
     }
+    let too_long = || {
+        let why = format!("the body is longer than {longest} bytes");
+        refused(StatusCode::PAYLOAD_TOO_LARGE, why)
+    };
+    if request.body().size_hint().lower() > longest as u64 {
+        return Err(too_long());
+    }
     let body = Limited::new(request.into_body(), longest).collect();
     match timeout(patience, body).await {
         Ok(Ok(body)) => Ok(body.to_bytes()),
-        Ok(Err(error)) if error.is::<http_body_util::LengthLimitError>() => {
-            let why = format!("the body is longer than {longest} bytes");
-            Err(refused(StatusCode::PAYLOAD_TOO_LARGE, why))
-        }
+        Ok(Err(error)) if error.is::<LengthLimitError>() => Err(too_long()),
         Ok(Err(_)) => Err(refused(
             StatusCode::BAD_REQUEST,
             "the body did not come whole",
