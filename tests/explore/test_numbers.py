@@ -68,7 +68,7 @@ def test_twenty_clicked_points(slab, explored):
 
 def test_curves_and_branches(slab, explored):
     page = explored(slab.address)
-    page.idle()
+    page.idle(curves=True)
     for slot in ["locus:hopf", "locus:pitchfork", "locus:period-doubling", "branch:x:equilibria", "branch:x:orbits", "branch:y:orbits"]:
         line = page.value(f"(() => {{ const a = twinslip.engine.current.get({slot!r}).answer; return twinslip.diagram.commandText(a); }})()")
         assert_same(page.answer(slot), commanded(line))

@@ -86,6 +86,7 @@ export class App {
     this.points = [0, 1].map((index) => new PointPanes(this, index));
     this.frame.fill(this);
     this.side.rebuild();
+    if (!this.engine.answers) this.frame.fix();
     for (const pane of [this.diagram, ...Object.values(this.alongs)]) pane.clear();
     this.show();
   }
@@ -352,6 +353,7 @@ export class App {
     const { scene, model, engine } = this;
     const panes = this.points[index];
     const began = this.moved;
+    const ticket = (panes.ticket = (panes.ticket ?? 0) + 1);
     let drawn = 0;
     // Both are there: the drag is answered.
     const answered = () => {
@@ -391,8 +393,9 @@ export class App {
         panes.verdict.takeAnswer("equilibria", answer);
         answered();
         if (scene.until) return;
+        if (known.orbit) return run();
         setTimeout(() => {
-          if (this.scene === scene && !known.orbit) run();
+          if (panes.ticket === ticket && !until) run();
         }, PATIENCE);
       },
     });
@@ -403,7 +406,7 @@ export class App {
         known.orbit = answer;
         panes.spectrum.takeOrbit(answer);
         panes.verdict.takeAnswer("orbit", answer);
-        if (!scene.until && (known.equilibria || answer.ended)) run();
+        if (!scene.until && panes.ticket === ticket && (known.equilibria || answer.ended)) run();
       },
     });
     if (scene.until) run();

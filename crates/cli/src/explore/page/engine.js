@@ -186,9 +186,18 @@ export class Engine {
     this.listeners.add(listener);
   }
 
+  /** The slots for which something is computed. */
+  get busy() {
+    return [...this.current.entries()].filter(([, one]) => one.busy).map(([slot]) => slot);
+  }
+
   changed() {
-    const slots = [...this.current.entries()].filter(([, one]) => one.busy).map(([slot]) => slot);
-    for (const listener of this.listeners) listener(slots);
+    // Answers that come at once are no news.
+    this.telling ??= setTimeout(() => {
+      this.telling = null;
+      const slots = this.busy;
+      for (const listener of this.listeners) listener(slots);
+    }, 60);
   }
 
   /** Stops what is asked for that slot. */

@@ -54,7 +54,6 @@ class Frame {
       return element("div", { class: "column point" }, name, ...point.all.map((pane) => pane.element));
     });
     this.main.replaceChildren(app.side.element, this.left, ...this.columns);
-    if (!app.engine.answers) this.fix();
   }
 
   /** A saved page computes nothing: what asks is switched off. */
@@ -81,6 +80,8 @@ class Frame {
   }
 
   busy(slots) {
+    if (slots.join() === this.slots) return;
+    this.slots = slots.join();
     const names = [...new Set(slots.map((slot) => slot.split(":")[0].replace("locus", "curves").replace("branch", "branches")))];
     this.works.textContent = names.length ? `computing ${names.slice(0, 3).join(", ")}${names.length > 3 ? " ..." : ""}` : "";
     this.works.classList.toggle("spins", names.length > 0);

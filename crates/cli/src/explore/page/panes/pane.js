@@ -49,6 +49,13 @@ export class Pane {
       this.tip = element("div", { class: "tip", hidden: true });
       this.body.append(this.canvas, this.tip);
       new ResizeObserver(() => this.redraw()).observe(this.canvas);
+      // What is not in view is drawn when it comes into view.
+      this.visible = true;
+      const seen = new IntersectionObserver(([entry]) => {
+        this.visible = entry.isIntersecting;
+        if (this.visible && this.owes) this.redraw();
+      });
+      seen.observe(this.body);
       this.listen();
     }
   }
@@ -134,6 +141,7 @@ export class Pane {
 
   async savePng() {
     if (!this.description) return this.app.say("There is no picture yet.");
+    if (this.owes) this.drawNow();
     download(`${this.name}.png`, await pngOf(this.canvas), "image/png");
   }
 
@@ -150,6 +158,8 @@ export class Pane {
 
   redraw() {
     if (!this.canvas || !this.canvas.isConnected) return;
+    this.owes = !this.visible;
+    if (this.owes) return;
     cancelAnimationFrame(this.frame);
     this.frame = requestAnimationFrame(() => this.drawNow());
   }
@@ -164,6 +174,8 @@ export class Pane {
   /** Says that this is being computed, or how long it took. */
   busy(slots, mine) {
     const works = mine.some((slot) => slots.includes(slot));
+    if (works === this.works && this.status.textContent === (works ? "computing" : (this.took ?? ""))) return;
+    this.works = works;
     this.element.setAttribute("aria-busy", String(works));
     if (works && !this.element.classList.contains("busy")) this.status.textContent = "computing";
     if (!works) this.status.textContent = this.took ?? "";

@@ -29,11 +29,14 @@ class ParameterRow {
 
   show(value) {
     const [lo, hi] = this.range;
+    const shown = `${value} ${lo} ${hi}`;
+    if (shown === this.shown && !this.field.hasAttribute("aria-invalid")) return;
+    this.shown = shown;
     const log = this.one.log && lo > 0 && value > 0;
     const part = log ? Math.log(value / lo) / Math.log(hi / lo) : (value - lo) / (hi - lo);
     this.slider.value = String(Math.round(STEPS * Math.min(Math.max(part, 0), 1)));
     this.slider.setAttribute("aria-valuetext", `${short(value)} ${this.one.unit ?? ""}`);
-    if (document.activeElement !== this.field) this.field.value = short(value);
+    this.field.value = short(value);
     this.field.removeAttribute("aria-invalid");
   }
 

@@ -6,6 +6,22 @@ import { COLOURS, dotsOf, lineOf, markOf, panelOf, rangeAround } from "./panels.
 import { Portrait3d } from "../solid/turn.js";
 import { explained } from "../glossary.js";
 
+/** Panels of such a picture, one above the other. */
+const PANELS = 3;
+
+/** The states against time, of a run that has no picture as it broke off. */
+function statesOf(answer, states) {
+  const time = answer.column("time");
+  const shown = states.filter(({ name }) => answer.column(name)).slice(0, PANELS);
+  const column = shown.map(({ name, label }) => {
+    const list = answer.column(name);
+    const panel = panelOf({ label: "time t", log: false, range: rangeAround([time]) }, { label, log: false, range: rangeAround([list]) });
+    panel.series.push(lineOf("", time, list, COLOURS[0]));
+    return panel;
+  });
+  return { size: [400, 200 * column.length], blocks: [{ title: "", columns: [column] }] };
+}
+
 /** The first column of panels of a picture: what is drawn against time. */
 function firstColumn(picture) {
   const blocks = picture.blocks.map((block) => ({ ...block, columns: block.columns.slice(0, 1) }));
@@ -23,10 +39,10 @@ export class RunPane extends Pane {
   }
 
   takeRun(answer) {
-    if (!this.take(answer)) return;
+    // A run that breaks off has come so far.
+    if (!this.take(answer) && answer.rows.length < 2) return;
     const picture = answer.pictures.at(-1);
-    if (!picture) return;
-    this.show(firstColumn(picture));
+    this.show(picture ? firstColumn(picture) : statesOf(answer, this.app.model.states));
     const [rows, last] = [answer.rows.length, answer.column("time")?.at(-1)];
     const unit = answer.units[answer.columns.indexOf("time")];
     const told = answer.says.filter((text) => /^(warning|note)/.test(text));
@@ -99,7 +115,7 @@ export class PortraitPane extends Pane {
   }
 
   takeRun(answer) {
-    if (!this.take(answer)) return;
+    if (!this.take(answer) && answer.rows.length < 2) return;
     this.compose();
   }
 

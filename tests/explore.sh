@@ -1,0 +1,12 @@
+#!/bin/sh
+# Tries the page of `twinslip explore` in chromium, which it installs if need be, driven by playwright. Words that follow are for pytest.
+set -eu
+cd "$(dirname "$0")/.."
+
+./setup chromium python3-venv
+[ -x target/release/twinslip ] || cargo build --release --locked -p twinslip-cli
+venv=target/explore-python
+[ -x $venv/bin/pytest ] || python3 -m venv $venv
+# Chromium is Debian's: none is downloaded.
+PLAYWRIGHT_SKIP_BROWSER_DOWNLOAD=1 $venv/bin/pip install --quiet --requirement tests/explore/requirements.txt
+exec $venv/bin/python -m pytest -q -p no:cacheprovider tests/explore "$@"
