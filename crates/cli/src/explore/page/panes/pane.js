@@ -6,6 +6,8 @@ import { commandLine, copied, csv, download, filesOf, python, toml } from "../ou
 import { element } from "../elements.js";
 
 let panes = 0;
+/** What is out of view is drawn after so many milliseconds without anything new. */
+const LATER = 700;
 
 /** The colours of drawings, from the style of the page. */
 export function themeOf(node) {
@@ -49,7 +51,7 @@ export class Pane {
       this.tip = element("div", { class: "tip", hidden: true });
       this.body.append(this.canvas, this.tip);
       new ResizeObserver(() => this.redraw()).observe(this.canvas);
-      // What is not in view is drawn when it comes into view.
+      // What is not in view is drawn when it comes into view, or when nothing else has been drawn for a while.
       this.visible = true;
       const seen = new IntersectionObserver(([entry]) => {
         this.visible = entry.isIntersecting;
@@ -159,12 +161,17 @@ export class Pane {
   redraw() {
     if (!this.canvas || !this.canvas.isConnected) return;
     this.owes = !this.visible;
-    if (this.owes) return;
+    clearTimeout(this.later);
+    if (this.owes) {
+      this.later = setTimeout(() => this.owes && this.canvas.isConnected && this.drawNow(), LATER);
+      return;
+    }
     cancelAnimationFrame(this.frame);
     this.frame = requestAnimationFrame(() => this.drawNow());
   }
 
   drawNow() {
+    this.owes = false;
     const view = this.view();
     const surface = new CanvasSurface(this.canvas, view);
     if (this.description) this.hits = draw(surface, this.description, view);
