@@ -16,8 +16,6 @@ export function show(root, transport, begin) {
 export function render({ model, el }) {
   const begin = JSON.parse(model.get("begin"));
   const transport = new WidgetTransport(model);
-  // Keys that move the point or undo are not shortcuts of JupyterLab here.
-  el.dataset.lmSuppressShortcuts = "true";
   const app = show(el, transport, { ...begin, inNotebook: true });
   return () => {
     app.engine.stopWhere(() => true);
