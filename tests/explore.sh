@@ -9,4 +9,8 @@ venv=target/explore-python
 [ -x $venv/bin/pytest ] || python3 -m venv $venv
 # Chromium is Debian's: none is downloaded.
 PLAYWRIGHT_SKIP_BROWSER_DOWNLOAD=1 $venv/bin/pip install --quiet --requirement tests/explore/requirements.txt
+# The widget of notebooks is tried where the wheel of the Python package was built, as by python/test.
+for wheel in target/packages/twinslip-*.whl; do
+    [ ! -e "$wheel" ] || $venv/bin/pip install --quiet --force-reinstall --no-deps "$wheel"
+done
 exec $venv/bin/python -m pytest -q -p no:cacheprovider tests/explore "$@"

@@ -1,15 +1,12 @@
 """The page as the widget of a notebook: its module in a page of another kind, wired to ``System.explore()`` of Python."""
 
 import queue
-import sys
 import threading
 import time
 
 import pytest
-from conftest import ROOT
 
 pytest.importorskip("anywidget")
-sys.path.insert(0, str(ROOT / "python"))
 twinslip = pytest.importorskip("twinslip")
 
 import comm  # noqa: E402
