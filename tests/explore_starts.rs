@@ -369,33 +369,34 @@ fn modules_become_one_script() {
     }
 }
 
+/// The files of modules below a folder, by their paths from it.
+fn modules(folder: &Path, above: &str) -> Vec<String> {
+    let below = |file: std::fs::DirEntry| {
+        let name = format!("{above}{}", file.file_name().to_string_lossy());
+        match file.path().is_dir() {
+            true => modules(&file.path(), &format!("{name}/")),
+            false => vec![name],
+        }
+    };
+    let files = std::fs::read_dir(folder).expect("a folder").flatten();
+    let mut all: Vec<String> = files.flat_map(below).collect();
+    all.retain(|name| name.ends_with(".js"));
+    all
+}
+
 #[test]
 fn the_script_of_the_page_holds_all_its_modules() {
     let script = Server::start(&[]).get("explore.js").body;
     let folder = Path::new(crate::common::ROOT).join("crates/cli/src/explore/page");
-    let (mut found, mut left) = (0, Vec::new());
-    for file in std::fs::read_dir(folder).expect("the folder") {
-        let name = file
-            .expect("a file")
-            .file_name()
-            .into_string()
-            .expect("UTF-8");
-        if name.ends_with(".js") {
-            found += 1;
-            if !script.contains(&format!("modules[\"{name}\"] = ")) {
-                left.push(name);
-            }
-        }
-    }
-    assert!(
-        found > 5 && left.is_empty(),
-        "{left:?} are imported by none"
-    );
+    let mut left = modules(&folder, "");
+    assert!(left.len() > 20);
+    left.retain(|name| !script.contains(&format!("modules[\"{name}\"] = ")));
+    assert!(left.is_empty(), "{left:?} are imported by none");
     assert!(!script.contains("</script"));
 }
 
 #[test]
-fn help_has_an_example() {
+fn help_has_an_example_and_shells_complete_it() {
     let help = twinslip("explore --help").out;
     for part in [
         "--port",
@@ -405,6 +406,14 @@ fn help_has_an_example() {
         "twinslip explore fig12",
     ] {
         assert!(help.contains(part), "{part}");
+    }
+    for shell in ["bash", "zsh", "fish"] {
+        assert!(
+            twinslip(&format!("completions {shell}"))
+                .out
+                .contains("no-browser"),
+            "{shell}"
+        );
     }
     let unheard = program()
         .args(["explore", "--no-browser", "--driving", "-1"])

@@ -48,13 +48,13 @@ pub(crate) struct ExploreOptions {
     #[command(flatten)]
     model: ModelOptions,
     /// Port of 127.0.0.1 that the server listens on; 0 takes one that is free
-    #[arg(long, value_name = "P", default_value_t = 0, help_heading = "Server")]
+    #[arg(long, value_name = "P", default_value_t = 0, help_heading = "Page")]
     port: u16,
     /// Only print the address of the page, and open no browser
-    #[arg(long, help_heading = "Server")]
+    #[arg(long, help_heading = "Page")]
     no_browser: bool,
     /// Write the page with its first pictures into FILE.html, which needs no server, instead of serving it
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["port", "no_browser"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["port", "no_browser"], help_heading = "Page")]
     save: Option<PathBuf>,
 }
 

@@ -121,10 +121,9 @@ impl Outbox {
     fn change(&self, change: impl FnOnce(&mut Kept)) {
         let mut kept = self.kept();
         change(&mut kept);
-        if kept.ended.is_some() || !kept.waits_for_end {
-            if let Some(waker) = kept.waker.take() {
-                waker.wake();
-            }
+        let waits = kept.ended.is_none() && kept.waits_for_end;
+        if let Some(waker) = kept.waker.take_if(|_| !waits) {
+            waker.wake();
         }
     }
 

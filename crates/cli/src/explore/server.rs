@@ -163,7 +163,7 @@ impl Server {
             },
             (_, Some(command)) if command == "model" || COMMANDS.contains(&command) => {
                 match request.method() == Method::POST {
-                    true => self.asked(&command.to_owned(), request).await,
+                    true => self.asked(command, request).await,
                     false => not_allowed("POST"),
                 }
             }
