@@ -240,3 +240,19 @@ fn exponents_that_are_hardly_known_make_no_torus() {
     assert_eq!(with(0.05 / duration), Regime::Torus);
     assert_eq!(with(1.0 / duration), Regime::Undecided);
 }
+
+/// Two of three equal interfaces that begin alike stay alike, on an orbit that is stable as long as they are: the exponent of what would
+/// part them is positive, and no sign of chaos.
+#[test]
+fn an_orbit_that_is_unstable_off_its_plane_is_not_chaos() {
+    let ended = command::twinslip(
+        "section --interfaces 3 --driving 10 --stiffness 0.14 --skip 300 --returns 220 --lyapunov --format json -q",
+    );
+    let made: serde_json::Value = serde_json::from_str(&ended.out).expect("JSON");
+    let largest = command::number(&made, "/result/lyapunov/0/value");
+    let bound = command::number(&made, "/result/lyapunov/0/uncertainty");
+    assert!(largest > bound, "{largest} +- {bound}");
+    assert_eq!(made["result"]["regime"], "undecided");
+    let note = made["result"]["note"].as_str().expect("a note");
+    assert!(note.contains("unstable orbit"), "{note}");
+}

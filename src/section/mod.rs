@@ -16,11 +16,11 @@ pub use lyapunov::{
     Exponents, FEWEST_FOR_EXPONENTS, LyapunovSpectrum, at_equilibrium, record_finely, spectrum,
     spectrum_watched,
 };
+pub(crate) use periodicity::{Closing, PeriodicSearch, closing_in, reduce};
 pub use periodicity::{LONGEST_PERIOD, Periodic, periodicity};
-pub(crate) use periodicity::{PeriodicSearch, reduce};
 pub use regime::aperiodic;
 pub use regime::{FEWEST_RETURNS, Regime, RegimeVerdict, verdict};
-pub(crate) use regime::{IRREGULAR, REGULAR, points};
+pub(crate) use regime::{IRREGULAR, ON_SADDLE, REGULAR, points};
 pub(crate) use rest::{equilibrium_near, growth};
 pub(crate) use returns::{AT_START, Recorder, Watched};
 pub use returns::{Ended, Return, ReturnRecord, See, Watching, record, usual_patience};

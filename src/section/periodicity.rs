@@ -22,6 +22,8 @@ const ARRIVED: f64 = 1e-6;
 const PER_ACCURACY: f64 = 1e3;
 /// What a distance must have shrunk to over the recording, where it is above that.
 const SHRUNK: f64 = 0.7;
+/// The same of a point that does not attract, which chaos passes by too.
+const SHRUNK_TO_SADDLE: f64 = 0.1;
 /// A periodic point that comes back as close as this sooner has the shorter period.
 const SAME: f64 = 1e-6;
 /// A multiplier within this of one in modulus leaves stability open.
@@ -69,6 +71,31 @@ pub fn periodicity(
     surface: &Surface,
     record: &ReturnRecord,
 ) -> Result<Option<Periodic>> {
+    Ok(match closing_in(field, surface, record)? {
+        Closing::Attracted(point) => Some(point),
+        Closing::OnSaddle | Closing::Nowhere => None,
+    })
+}
+
+/// What returns close in on.
+pub enum Closing {
+    /// A periodic point that attracts.
+    Attracted(Periodic),
+    /// One that does not: the run is in an invariant plane, say, from which only rounding could lead away.
+    OnSaddle,
+    /// No periodic point, or there are too few returns to tell.
+    Nowhere,
+}
+
+/// What the returns close in on.
+///
+/// # Errors
+/// As [`periodicity`].
+pub fn closing_in(
+    field: &AnyField<'_>,
+    surface: &Surface,
+    record: &ReturnRecord,
+) -> Result<Closing> {
     let taylor = |rtol: f64| {
         let tolerances = match surface.chart {
             SeriesVariables::LogStates => Tolerances::equal(rtol)?,
@@ -89,6 +116,7 @@ pub fn periodicity(
     }
     let arrived = ARRIVED.max(PER_ACCURACY * record.accuracy);
     let n = returns.len();
+    let mut on_saddle = false;
     for q in 1..=LONGEST_PERIOD.min(n / REPEATS) {
         let apart = |i: usize| (&returns[i].state - &returns[i - q].state).amax();
         let near = (n - q..n).map(apart).fold(0.0, f64::max);
@@ -97,10 +125,11 @@ pub fn periodicity(
         let closing = near < arrived || near < SHRUNK.sqrt() * before.fold(0.0, f64::max);
         if near < NEAR && closing {
             let accuracy = (record.accuracy, q);
-            let found = PeriodicSearch::new(field, surface, &mut fine, returns, accuracy)
-                .point()
-                .filter(Periodic::attracts);
-            if let Some(mut found) = found {
+            let found = PeriodicSearch::new(field, surface, &mut fine, returns, accuracy).point();
+            on_saddle |= found
+                .as_ref()
+                .is_some_and(|point| !point.attracts() && stays_near(point, returns, arrived));
+            if let Some(mut found) = found.filter(Periodic::attracts) {
                 let mut again = PeriodicSearch::new(field, surface, &mut coarse, returns, accuracy);
                 again.from = found.point.clone();
                 // To where it does not come nearer.
@@ -109,11 +138,28 @@ pub fn periodicity(
                 let period = &mut found.period;
                 period.uncertainty =
                     (other.period.value - period.value).abs() + ROUNDING_OF_PERIOD * period.value;
-                return Ok(Some(found));
+                return Ok(Closing::Attracted(found));
             }
         }
     }
-    Ok(None)
+    Ok(match on_saddle {
+        true => Closing::OnSaddle,
+        false => Closing::Nowhere,
+    })
+}
+
+/// Whether returns have arrived at a point, or come much nearer to it over the recording.
+fn stays_near(point: &Periodic, returns: &[Return], arrived: f64) -> bool {
+    let n = returns.len();
+    let phase = |i: &usize| (n - 1 - i).is_multiple_of(point.returns);
+    let distance = |i: usize| (&returns[i].state - &point.point).amax();
+    let over =
+        |range: std::ops::Range<usize>| range.filter(phase).map(distance).fold(0.0, f64::max);
+    let (early, late) = (
+        over(0..n / 2),
+        over(n - n.div_ceil(4).max(point.returns)..n),
+    );
+    late <= arrived || late <= SHRUNK_TO_SADDLE * early
 }
 
 impl Periodic {

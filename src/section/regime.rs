@@ -2,7 +2,7 @@
 
 use super::curve::{InvariantCurve, invariant_curve, regularity};
 use super::lyapunov::Exponents;
-use super::periodicity::{Periodic, periodicity};
+use super::periodicity::{Closing, Periodic, closing_in};
 use super::returns::{Ended, Return, ReturnRecord};
 use super::surface::Surface;
 use crate::error::Result;
@@ -73,6 +73,9 @@ pub struct RegimeVerdict {
     pub why: Option<&'static str>,
 }
 
+/// Why a run that stays on an unstable orbit has no regime.
+pub const ON_SADDLE: &str = "the returns close in on an unstable orbit, which the run has not left, as none leaves that begins where interfaces are alike; give another `start`";
+
 impl RegimeVerdict {
     fn of(regime: Regime) -> Self {
         RegimeVerdict {
@@ -81,6 +84,11 @@ impl RegimeVerdict {
             curve: None,
             why: None,
         }
+    }
+
+    /// Whether the run has stayed on an unstable orbit: its exponents say nothing of its regime then.
+    pub fn is_on_saddle(&self) -> bool {
+        self.why == Some(ON_SADDLE)
     }
 
     fn undecided(why: &'static str) -> Self {
@@ -97,7 +105,7 @@ impl RegimeVerdict {
 /// told.
 ///
 /// # Errors
-/// Those of [`periodicity`].
+/// Those of [`closing_in`].
 pub fn verdict(
     field: &AnyField<'_>,
     surface: &Surface,
@@ -108,11 +116,15 @@ pub fn verdict(
         return Ok(RegimeVerdict::of(Regime::Steady));
     }
     let returns = &record.returns;
-    if let Some(periodic) = periodicity(field, surface, record)? {
-        return Ok(RegimeVerdict {
-            periodic: Some(periodic),
-            ..RegimeVerdict::of(Regime::Periodic)
-        });
+    match closing_in(field, surface, record)? {
+        Closing::Attracted(periodic) => {
+            return Ok(RegimeVerdict {
+                periodic: Some(periodic),
+                ..RegimeVerdict::of(Regime::Periodic)
+            });
+        }
+        Closing::OnSaddle => return Ok(RegimeVerdict::undecided(ON_SADDLE)),
+        Closing::Nowhere => {}
     }
     if field.dimension() < 3 {
         return Ok(RegimeVerdict::undecided(
@@ -188,6 +200,10 @@ fn wandering(
     };
     if exponents.converged && exponents.values.first().is_some_and(positive) && disorder > IRREGULAR
     {
+        // What varies is then the error of the run, which has no order.
+        if repeats(points, accuracy) {
+            return RegimeVerdict::undecided(ON_SADDLE);
+        }
         return RegimeVerdict::of(Regime::Chaotic);
     }
     RegimeVerdict::undecided(

@@ -5,8 +5,8 @@ use super::finite_difference_exponent::stretching;
 use super::watch::{SweepRun, see};
 use crate::integrate::Control;
 use crate::section::{
-    Ended, FEWEST_FOR_EXPONENTS, FEWEST_RETURNS, IRREGULAR, REGULAR, Regime, Return, Watching,
-    aperiodic, growth, points, record_finely, regularity, spectrum,
+    Closing, Ended, FEWEST_FOR_EXPONENTS, FEWEST_RETURNS, IRREGULAR, ON_SADDLE, REGULAR, Regime,
+    Return, Watching, aperiodic, closing_in, growth, points, record_finely, regularity, spectrum,
 };
 
 /// Returns without which neither torus nor chaos is told: those before are let pass.
@@ -110,6 +110,9 @@ fn with_tangents(run: &SweepRun, max_steps: usize) -> Result<Settled, Undecided>
         .map_err(|_| tangents_fail)?;
     if let Ended::Steady { equilibrium, .. } = &recorded.ended {
         return Ok(steady(run, equilibrium));
+    }
+    if let Ok(Closing::OnSaddle) = closing_in(field, surface, &recorded) {
+        return Err(ON_SADDLE);
     }
     let found = spectrum(field, &recorded).map_err(|_| tangents_fail)?;
     let known = Some(found.known());

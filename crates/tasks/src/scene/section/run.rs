@@ -296,6 +296,9 @@ impl Settling<'_> {
         let Some(found) = (self.means)(&own, see)? else {
             return Ok(None);
         };
+        if made.is_on_saddle() {
+            return Ok(Some(found));
+        }
         let many = own.ended == Ended::Complete && own.returns.len() >= FEWEST_RETURNS;
         if field.dimension() >= 3 && many && made.periodic.is_none() {
             let known = Exponents {
