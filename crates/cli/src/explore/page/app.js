@@ -26,6 +26,15 @@ const CELLS = { one: 24, fit: 10 };
 /** Curves that take least come first. */
 const QUICK = ["pitchfork", "saddle-node", "hopf", "period-doubling", "orbit-pitchfork", "torus", "orbit-saddle-node"];
 
+/** Curves of orbits of these models take minutes: they are computed when somebody asks for them. */
+function isCostly(model) {
+  const unequal = model.parameters.some(({ name }) => /_\d+$/.test(name));
+  const builtIn = !/\.toml$|\n/.test(model.law ?? "");
+  return model.kind === "interfaces" && (model.states.length > 3 || unequal || !builtIn);
+}
+
+const OF_ORBITS = /^(orbit-|period-doubling|torus)/;
+
 /** The panes of one point. */
 class PointPanes {
   constructor(app, index) {
@@ -468,7 +477,10 @@ export class App {
   askCurves() {
     const { scene, model } = this;
     if (!scene.axes.y) return;
-    const kinds = [...model.loci].sort((a, b) => QUICK.indexOf(a) - QUICK.indexOf(b));
+    const all = [...model.loci].sort((a, b) => QUICK.indexOf(a) - QUICK.indexOf(b));
+    const waits = isCostly({ ...model, law: scene.given.law }) && !scene.orbits;
+    const kinds = waits ? all.filter((kind) => !OF_ORBITS.test(kind)) : all;
+    this.diagram.offerOrbits(waits);
     const began = performance.now();
     this.curvesOf = kinds;
     const asked = kinds.map((kind) => {

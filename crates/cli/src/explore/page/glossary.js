@@ -19,16 +19,16 @@ export function readGlossary(markdown) {
       meaning = head;
       continue;
     }
-    for (const term of cells[0].replace(/\(.*?\)/g, "").split(",")) entries.set(term.trim().toLowerCase(), cells[meaning] ?? "");
+    for (const term of cells[0].replace(/\(.*?\)/g, "").split(",")) entries.set(term.trim().toLowerCase(), { name: term.trim(), words: cells[meaning] ?? "" });
   }
 }
 
 /** What a label or term means; null where the glossary has no such term. */
 export function explained(label) {
   const plain = String(label).toLowerCase();
-  if (entries.has(plain)) return entries.get(plain);
+  if (entries.has(plain)) return entries.get(plain).words;
   const inner = /\(([A-Z0-9]+)\)/.exec(label);
-  return inner ? (entries.get(inner[1].toLowerCase()) ?? null) : null;
+  return inner ? (entries.get(inner[1].toLowerCase())?.words ?? null) : null;
 }
 
 /** A term that says on hover what it means, and opens the glossary there. */
@@ -53,7 +53,7 @@ let dialog = null;
 export function openGlossary(from, label = null) {
   if (!dialog) {
     const list = element("dl", {});
-    for (const [name, words] of entries) list.append(element("dt", { id: `term-${slug(name)}` }, name), element("dd", {}, words));
+    for (const { name, words } of entries.values()) list.append(element("dt", { id: `term-${slug(name)}` }, name), element("dd", {}, words));
     const close = element("button", { type: "button", class: "close" }, "Close");
     dialog = element("dialog", { class: "glossary", "aria-label": "Glossary" }, element("h2", {}, "Glossary"), close, list);
     close.addEventListener("click", () => dialog.close());

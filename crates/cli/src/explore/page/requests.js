@@ -154,7 +154,7 @@ function durationOf(equilibriaAnswer, orbitAnswer) {
   const period = orbitAnswer?.result?.orbit?.period;
   const turns = typeof period === "number" ? period : period?.value;
   if (turns > 0) return 8 * turns;
-  const first = equilibriaAnswer?.result?.equilibria?.[0]?.eigenvalues ?? [];
+  const first = (equilibriaAnswer?.result?.equilibria?.[0]?.eigenvalues ?? []).map((one) => one.value ?? one);
   const imaginary = Math.max(0, ...first.map(([, im]) => Math.abs(im)));
   const real = first.map(([re]) => Math.abs(re)).filter((re) => re > 0);
   const slow = real.length ? 8 / Math.min(...real) : 0;

@@ -20,6 +20,7 @@ export function sceneOf(model, given = {}) {
     portrait: null,
     surface: null,
     compare: false,
+    orbits: false,
     theme: "auto",
   };
 }
@@ -178,6 +179,7 @@ export function fromAddress(hash) {
     draws: isNumber(told.draws) ? Math.min(Math.max(Math.round(told.draws), 0), 1000) : 20,
     portrait: Array.isArray(told.portrait) && told.portrait.slice(0, 3).every(isText) ? told.portrait.slice(0, 3) : null,
     surface: isText(told.surface) ? told.surface : null,
+    orbits: told.orbits === true,
     compare: told.compare === true && points.length > 1,
     theme: ["auto", "light", "dark"].includes(told.theme) ? told.theme : "auto",
   };

@@ -46,12 +46,18 @@ export class DiagramPane extends Pane {
     this.canvas.setAttribute("role", "application");
     this.canvas.setAttribute("aria-roledescription", "diagram");
     this.mapButton = button("Map of regimes", () => app.askMap(), { title: "Compute the regime at each cell of a grid (sweep)" });
-    this.heading.after(this.mapButton);
+    this.orbitsButton = button("Curves of orbits", () => app.change({ orbits: true }), { title: "These take minutes here", hidden: true });
+    this.heading.after(this.orbitsButton, this.mapButton);
     this.drag = null;
     this.canvas.addEventListener("pointerdown", (event) => this.down(event));
     this.canvas.addEventListener("pointermove", (event) => this.move(event));
     for (const name of ["pointerup", "pointercancel"]) this.canvas.addEventListener(name, (event) => this.up(event));
     this.canvas.addEventListener("keydown", (event) => this.key(event));
+  }
+
+  /** Curves of orbits are computed when they are asked for. */
+  offerOrbits(wait) {
+    this.orbitsButton.hidden = !wait;
   }
 
   /** Forgets the curves of another system or other parameters. */

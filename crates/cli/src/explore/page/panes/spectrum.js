@@ -52,7 +52,7 @@ export class SpectrumPane extends Pane {
   compose() {
     this.size = null;
     this.ranges = null;
-    const states = (this.states ?? []).filter((one) => one.eigenvalues);
+    const states = (this.states ?? []).filter((one) => one.eigenvalues).map(flat);
     const panels = [];
     const rows = [];
     const unit = this.answer?.object?.units?.eigenvalue;
@@ -72,7 +72,7 @@ export class SpectrumPane extends Pane {
             const bars = bound ? { x: [re - bound, re + bound], y: [im - bound, im + bound] } : null;
             panel.marks.push(markOf(re, im, "", { ...style, bars }));
           }
-          rows.push([name, "eigenvalue", complex(re, im, bound), re < 0 ? "decays" : re > 0 ? "grows" : "neutral"]);
+          rows.push([name, state.kinds[k], complex(re, im, bound), re < 0 ? "decays" : re > 0 ? "grows" : "neutral"]);
         });
         if (i < DRAWN && states.length > 1) panel.keys.push({ symbol: style.symbol, filled: style.filled, colour: style.colour, label: name });
       });
@@ -107,6 +107,13 @@ export class SpectrumPane extends Pane {
     this.canvas.style.height = `${panels.length === 1 ? 230 : 420}px`;
     this.show({ size: [420 * panels.length, 300], blocks: [{ title: "", columns: panels.map((panel) => [panel]) }] });
   }
+}
+
+/** An equilibrium with its eigenvalues as pairs, also those of many interfaces, which come with their multiplicity. */
+function flat(state) {
+  const pair = (one) => (Array.isArray(one) ? one : one.value);
+  const of = (one) => (Array.isArray(one) || one.multiplicity === 1 ? "eigenvalue" : `eigenvalue, ${one.multiplicity} times`);
+  return { ...state, eigenvalues: state.eigenvalues.map(pair), kinds: state.eigenvalues.map(of) };
 }
 
 /** Ranges around the same middle that make a frame's units as long on one axis as on the other. */
