@@ -210,7 +210,7 @@ fn line(name: &str, value: &Value) -> Result<String, Error> {
 }
 
 /// Whole numbers without a point, as counts have to be.
-fn number_text(number: &serde_json::Number) -> String {
+pub fn number_text(number: &serde_json::Number) -> String {
     /// Doubles count to here without gaps.
     const MOST: f64 = 9e15;
     match number.as_f64() {

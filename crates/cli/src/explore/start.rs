@@ -4,7 +4,7 @@
 use super::model;
 use super::outbox::Outbox;
 use super::queue::Queue;
-use super::request::words;
+use super::request::{number_text, words};
 use super::work::{Work, begin};
 use crate::failure::Failure;
 use serde_json::{Map, Value, json};
@@ -143,7 +143,7 @@ impl Scene<'_> {
             }
             match one["option"] == true {
                 true => drop(options.insert(name.into(), one["value"].clone())),
-                false => set.push(json!(format!("{name}={}", one["value"]))),
+                false => set.push(json!(format!("{name}={}", shown(&one["value"])))),
             }
         }
         let others = given_set.into_iter().filter(|set| {
@@ -157,11 +157,17 @@ impl Scene<'_> {
         options
     }
 
+    /// The range of an axis as `NAME=A:B`; of a parameter that must be positive it begins above 0.
     fn range(&self, name: &str) -> String {
-        let range = self
-            .parameter(name)
-            .map_or(&Value::Null, |one| &one["range"]);
-        format!("{name}={}:{}", range[0], range[1])
+        /// Part of the end of such a range.
+        const LEAST: f64 = 0.02;
+        let one = self.parameter(name).unwrap_or(&Value::Null);
+        let end = |at: usize| one["range"][at].as_f64().unwrap_or_default();
+        let least = match end(0) {
+            lo if lo <= 0.0 && one["positive"] == true => LEAST * end(1),
+            lo => lo,
+        };
+        format!("{name}={}:{}", shown(&json!(least)), shown(&json!(end(1))))
     }
 
     /// What says how long a run is shown.
@@ -295,6 +301,11 @@ impl Scene<'_> {
 fn with<const N: usize>(mut options: Options, more: [(&str, Value); N]) -> Options {
     options.extend(more.map(|(name, value)| (name.to_owned(), value)));
     options
+}
+
+/// A number as a page writes it.
+fn shown(number: &Value) -> String {
+    number.as_number().map_or_else(String::new, number_text)
 }
 
 /// Two digits are enough for what is only shown.
