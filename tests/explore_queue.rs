@@ -19,15 +19,19 @@ fn short() -> Value {
 
 const BACKGROUND: (&str, &str) = ("Priority", "u=6");
 
+/// How many commands run at once.
+fn places() -> usize {
+    std::thread::available_parallelism().map_or(2, |cores| cores.get().max(2)) + 2
+}
+
 /// As many commands as run at once.
 fn full(server: &Server) -> Vec<TcpStream> {
-    let cores = std::thread::available_parallelism().map_or(2, |cores| cores.get());
     let begin = |_| {
         let mut stream = server.ask("integrate", &endless(), &[STREAM]);
         begun(&mut stream);
         stream
     };
-    (0..cores.max(2)).map(begin).collect()
+    (0..places()).map(begin).collect()
 }
 
 /// Whether nothing comes for a while.
@@ -64,8 +68,7 @@ fn a_command_stops_when_its_client_leaves() {
         drop(running);
     }
     // Nobody reads what was asked for as a whole.
-    let cores = std::thread::available_parallelism().map_or(2, |cores| cores.get());
-    for _ in 0..4 * cores.max(2) {
+    for _ in 0..4 * places() {
         drop(server.ask("integrate", &endless(), &[]));
     }
     assert_eq!(server.object("law", &short()).status, 200);

@@ -47,7 +47,8 @@ impl Queue {
         Queue {
             state: Mutex::default(),
             changed: Condvar::new(),
-            places: [cores.max(2), if cores > 2 { 2 } else { 1 }],
+            // Two more than cores: what is stopped may need a while to end, and most of what is urgent takes a millisecond.
+            places: [cores.max(2) + 2, if cores > 2 { 2 } else { 1 }],
         }
     }
 

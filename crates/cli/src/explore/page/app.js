@@ -341,27 +341,29 @@ export class App {
   /** The scene has changed: quick answers at once, the others when it has settled. */
   recompute({ settled, curves }) {
     const shown = this.scene.compare ? [0, 1] : [0];
-    for (const index of shown) this.askPoint(index);
+    for (const index of shown) this.askPoint(index, !settled);
     if (this.scene.compare && !shown.includes(this.scene.active)) this.scene.active = 0;
     clearTimeout(this.settling);
     // A drag that goes on leaves nothing behind that takes the processor.
     if (!settled) this.engine.stopWhere((slot) => /^(section|branch)/.test(slot));
-    this.settling = setTimeout(() => this.settle(shown, curves), settled ? 0 : SETTLED);
+    this.settling = setTimeout(() => {
+      if (!settled) for (const index of shown) this.askPoint(index, false);
+      this.settle(shown, curves);
+    }, settled ? 0 : SETTLED);
   }
 
   settle(shown, curves) {
-    this.moved = null;
     for (const index of shown) this.askSection(index);
     for (const which of ["x", "y"]) if (this.scene.axes[which]) this.askBranch(which);
     if (this.scene.fit) this.bands.ask();
     if (curves || !this.curvesOf) this.askCurves();
   }
 
-  /** Equilibria, the orbit and a run at a point. */
-  askPoint(index) {
+  /** Equilibria, the orbit and a run at a point; amid a drag the run has no picture, and no orbit is looked for. */
+  askPoint(index, dragged) {
     const { scene, model, engine } = this;
     const panes = this.points[index];
-    const began = this.moved;
+    const began = dragged ? this.moved : null;
     const ticket = (panes.ticket = (panes.ticket ?? 0) + 1);
     let drawn = 0;
     // Both are there: the drag is answered.
@@ -376,12 +378,14 @@ export class App {
     const known = { equilibria: null, orbit: null };
     let until = null;
     const run = () => {
-      const next = requests.untilOf(scene, known.equilibria, known.orbit);
+      const kept = dragged && !known.orbit?.ended && !scene.until ? panes.until : null;
+      const next = kept ?? requests.untilOf(scene, known.equilibria, known.orbit);
       if (until && Math.abs(Math.log(next / until)) < 0.3) return;
       until = next;
       this.untilShown = until;
+      panes.until = until;
       this.side.refresh();
-      const { command, options } = requests.run(scene, model, index, until);
+      const { command, options } = requests.run(scene, model, index, until, !dragged);
       engine.ask(`run:${index}`, command, options, {
         onUpdate: (answer) => {
           if (answer.ended || answer.error) {
@@ -393,6 +397,18 @@ export class App {
         },
       });
     };
+    const orbit = requests.orbit(scene, model, index);
+    if (dragged) engine.stop(`orbit:${index}`);
+    else engine.ask(`orbit:${index}`, orbit.command, orbit.options, {
+      onUpdate: (answer) => {
+        if (!answer.ended && !answer.error) return;
+        known.orbit = answer;
+        panes.spectrum.takeOrbit(answer);
+        panes.verdict.takeAnswer("orbit", answer);
+        if (!scene.until && panes.ticket === ticket && (known.equilibria || answer.ended)) run();
+      },
+    });
+    // What takes least is asked last, and begun first.
     const wanted = requests.equilibria(scene, model, index, this.boxes?.[index]?.of === model ? this.boxes[index].box : null);
     engine.ask(`equilibria:${index}`, wanted.command, wanted.options, {
       onUpdate: (answer) => {
@@ -408,17 +424,8 @@ export class App {
         }, PATIENCE);
       },
     });
-    const orbit = requests.orbit(scene, model, index);
-    engine.ask(`orbit:${index}`, orbit.command, orbit.options, {
-      onUpdate: (answer) => {
-        if (!answer.ended && !answer.error) return;
-        known.orbit = answer;
-        panes.spectrum.takeOrbit(answer);
-        panes.verdict.takeAnswer("orbit", answer);
-        if (!scene.until && panes.ticket === ticket && (known.equilibria || answer.ended)) run();
-      },
-    });
-    if (scene.until) run();
+    // Amid a drag the run goes as far as the one before, until more is known.
+    if (scene.until || (dragged && panes.until)) run();
   }
 
   /** All equilibria in a box around the run, for systems whose equilibria are found near a start alone. */

@@ -74,9 +74,10 @@ function orbit(scene, model, index) {
   return { command: "orbit", options };
 }
 
-/** A run in time. */
-function run(scene, model, index, until) {
-  const options = { ...systemOptions(scene, model, index), until, plot: true };
+/** A run in time, with its picture where that is wanted. */
+function run(scene, model, index, until, plot = true) {
+  const options = { ...systemOptions(scene, model, index), until };
+  if (plot) options.plot = true;
   if (scene.start) options.start = listed(scene.start);
   if (scene.program && model.kind === "interfaces") options.program = scene.program;
   return { command: "integrate", options };

@@ -66,7 +66,8 @@ export class CanvasSurface {
     const [across, down] = [Math.max(1, Math.round(width * ratio)), Math.max(1, Math.round(height * ratio))];
     if (canvas.width !== across) canvas.width = across;
     if (canvas.height !== down) canvas.height = down;
-    this.context = canvas.getContext("2d");
+    // Drawn by the processor: pictures are small and drawn anew as a whole, which takes a slow graphics card longer.
+    this.context = canvas.getContext("2d", { willReadFrequently: true });
     this.context.setTransform(ratio, 0, 0, ratio, 0, 0);
   }
 

@@ -126,7 +126,7 @@ export class BranchPane extends Pane {
   overlay(surface, view) {
     if (!this.hits?.panels.length) return;
     const { scene } = this.app;
-    const context = this.canvas.getContext("2d");
+    const context = this.canvas.getContext("2d", { willReadFrequently: true });
     const frame = this.hits.frames[0];
     scene.points.forEach((point, i) => {
       const { x } = this.hits.toPixel(point[this.along], 1);

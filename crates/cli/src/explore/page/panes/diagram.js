@@ -139,7 +139,7 @@ export class DiagramPane extends Pane {
     if (!this.hits) return;
     const { scene } = this.app;
     const theme = themeOf(this.element);
-    const context = over.getContext("2d");
+    const context = over.getContext("2d", { willReadFrequently: true });
     context.scale(ratio, ratio);
     const frame = this.hits.frames[0];
     scene.points.forEach((point, i) => {

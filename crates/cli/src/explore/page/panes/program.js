@@ -111,7 +111,7 @@ export class ProgramField {
     const ratio = window.devicePixelRatio || 1;
     this.canvas.width = box.width * ratio;
     this.canvas.height = box.height * ratio;
-    const context = this.canvas.getContext("2d");
+    const context = this.canvas.getContext("2d", { willReadFrequently: true });
     context.scale(ratio, ratio);
     const theme = themeOf(this.canvas);
     const [lo, hi] = this.range;

@@ -9,16 +9,39 @@ import { explained } from "../glossary.js";
 /** Panels of such a picture, one above the other. */
 const PANELS = 3;
 
-/** The states against time, of a run that has no picture as it broke off. */
-function statesOf(answer, states) {
+/** The colours of the interfaces in pictures of runs. */
+const OF_INTERFACES = [COLOURS[1], COLOURS[0], COLOURS[2], COLOURS[3]];
+
+/** What a run that has no picture, amid a drag or as it broke off, shows: the panels of the program's picture. */
+function panelsOfRun(answer, model) {
   const time = answer.column("time");
-  const shown = states.filter(({ name }) => answer.column(name)).slice(0, PANELS);
-  const column = shown.map(({ name, label }) => {
+  const axis = (label, range, log = false) => ({ label, log, range });
+  const unit = (name) => {
+    const known = answer.units[answer.columns.indexOf(name)];
+    return known ? ` [${known}]` : "";
+  };
+  const across = axis(`time t${unit("time")}`, rangeAround([time]));
+  const several = (title, symbol, names) => {
+    const lists = names.map((name) => answer.column(name));
+    const panel = panelOf(across, axis(`${title} ${symbol}${unit(names[0])}`, rangeAround(lists, true), true));
+    names.forEach((_, i) => {
+      const stroke = i === 0 ? "solid" : "dashed";
+      panel.series.push(lineOf(names.length > 1 ? `${symbol}_${i + 1}` : "", time, lists[i], OF_INTERFACES[i % 4], { stroke }));
+    });
+    return panel;
+  };
+  const one = (name, label) => {
     const list = answer.column(name);
-    const panel = panelOf({ label: "time t", log: false, range: rangeAround([time]) }, { label, log: false, range: rangeAround([list]) });
+    const panel = panelOf(across, axis(label, rangeAround([list])));
     panel.series.push(lineOf("", time, list, COLOURS[0]));
     return panel;
-  });
+  };
+  const numbered = (prefix) => answer.columns.filter((name) => new RegExp(`^${prefix}_\\d+$`).test(name));
+  const [states, rates] = [numbered("state"), numbered("slip_rate")];
+  const column =
+    model.kind === "interfaces" && states.length && rates.length
+      ? [one("stress", `stress τ${unit("stress")}`), several("state", "ψ", states), several("slip rate", "v", rates)]
+      : model.states.filter(({ name }) => answer.column(name)).slice(0, PANELS).map(({ name, label }) => one(name, label));
   return { size: [400, 200 * column.length], blocks: [{ title: "", columns: [column] }] };
 }
 
@@ -42,7 +65,7 @@ export class RunPane extends Pane {
     // A run that breaks off has come so far.
     if (!this.take(answer) && answer.rows.length < 2) return;
     const picture = answer.pictures.at(-1);
-    this.show(picture ? firstColumn(picture) : statesOf(answer, this.app.model.states));
+    this.show(picture ? firstColumn(picture) : panelsOfRun(answer, this.app.model));
     const [rows, last] = [answer.rows.length, answer.column("time")?.at(-1)];
     const unit = answer.units[answer.columns.indexOf("time")];
     const told = answer.says.filter((text) => /^(warning|note)/.test(text));
