@@ -328,10 +328,8 @@ export class App {
   changeModel(model, scene) {
     Object.assign(this, { model, scene });
     this.engine.stopWhere((slot) => slot !== "model");
-    this.diagram.clear();
-    this.alongs.x.clear();
-    this.alongs.y.clear();
     this.side.rebuild();
+    for (const pane of this.allPanes) pane.clear();
     this.curvesOf = null;
     return scene;
   }

@@ -2,7 +2,7 @@
 
 import { element } from "../elements.js";
 import { Pane, short } from "./pane.js";
-import { axisLabel, COLOURS, lineOf, markOf, panelOf, rangeAround } from "./panels.js";
+import { axisLabel, COLOURS, lineOf, markOf, panelOf, rangeAroundMost } from "./panels.js";
 import { parameterOf, rangeOf } from "../scene.js";
 import { specialOf } from "./diagram.js";
 
@@ -112,7 +112,7 @@ export class BranchPane extends Pane {
     const values = series.flatMap((one) => one.y);
     const logY = name === "period" && values.length > 0;
     const label = state?.label ?? name.replaceAll("_", " ");
-    const panel = panelOf({ label: axisLabel(along), log, range }, { label, log: logY, range: rangeAround([values], logY) });
+    const panel = panelOf({ label: axisLabel(along), log, range }, { label, log: logY, range: rangeAroundMost([values], logY) });
     Object.assign(panel, { series, marks });
     if (strokes.size > 1) panel.strokes = [...strokes].map(([stroke, words]) => ({ stroke, label: words }));
     const found = ["equilibria", "orbits"].flatMap((of) => (this.answers[of] ? specialOf(this.answers[of]) : []));

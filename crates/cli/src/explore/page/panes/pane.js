@@ -175,7 +175,19 @@ export class Pane {
     const view = this.view();
     const surface = new CanvasSurface(this.canvas, view);
     if (this.description) this.hits = draw(surface, this.description, view);
+    else {
+      surface.clear(null);
+      this.hits = null;
+    }
     this.overlay?.(surface, view);
+  }
+
+  /** Nothing of another system is shown. */
+  clear() {
+    this.answer = null;
+    this.took = null;
+    this.problem.hidden = true;
+    if (this.canvas) this.show(null);
   }
 
   /** Says that this is being computed, or how long it took. */

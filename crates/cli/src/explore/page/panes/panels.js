@@ -36,6 +36,18 @@ export function markOf(x, y, label, { symbol = "circle", filled = true, colour =
   return { x, y, label, offset: [0, -12], symbol, filled, colour, behind: false, bars };
 }
 
+/** Curves that run off to infinity in a few of their points are cut where they leave so many times the range of the others. */
+const FAR = 12;
+
+/** The range around all numbers but those of curves that run off to infinity. */
+export function rangeAroundMost(lists, log = false) {
+  const all = lists.flat().filter((x) => Number.isFinite(x) && (!log || x > 0)).sort((a, b) => a - b);
+  const whole = rangeAround([all], log);
+  if (all.length < 20 || log) return whole;
+  const [lo, hi] = [all[Math.floor(0.05 * all.length)], all[Math.floor(0.95 * all.length)]];
+  return whole[1] - whole[0] > FAR * (hi - lo) && hi > lo ? rangeAround([[lo - (hi - lo), hi + (hi - lo)]]) : whole;
+}
+
 /** The smallest range around all numbers, with a margin; logarithmic axes keep to what is positive. */
 export function rangeAround(lists, log = false) {
   let [lo, hi] = [Infinity, -Infinity];

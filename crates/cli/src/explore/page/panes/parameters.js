@@ -8,11 +8,20 @@ import { ProgramField } from "./program.js";
 /** Steps of a slider. */
 const STEPS = 1000;
 
+/** Digits of a value in its field; a click gives no more. */
+const DIGITS = 7;
+const GREEK = { eta: "η", sigma: "σ", mu: "μ", beta: "β", alpha: "α", gamma: "γ" };
+
+/** A symbol with Greek letters. */
+function typeset(symbol) {
+  return symbol.replace(/^(eta|sigma|mu|beta|alpha|gamma)(?=_|$)/, (name) => GREEK[name]);
+}
+
 /** One parameter: its symbol, a slider over its range, and a field that takes numbers, with units in SI. */
 class ParameterRow {
   constructor(app, one) {
     Object.assign(this, { app, one });
-    const symbol = one.symbol ?? one.name;
+    const symbol = typeset(one.symbol ?? one.name);
     const words = one.meaning ? `${one.meaning}${one.unit ? ` [${one.unit}]` : ""}` : one.name;
     this.slider = element("input", { type: "range", min: "0", max: String(STEPS), step: "1", "aria-label": words });
     this.field = element("input", { type: "text", inputmode: "decimal", "aria-label": `${words}, value`, size: "9", spellcheck: "false" });
@@ -36,7 +45,7 @@ class ParameterRow {
     const part = log ? Math.log(value / lo) / Math.log(hi / lo) : (value - lo) / (hi - lo);
     this.slider.value = String(Math.round(STEPS * Math.min(Math.max(part, 0), 1)));
     this.slider.setAttribute("aria-valuetext", `${short(value)} ${this.one.unit ?? ""}`);
-    this.field.value = short(value);
+    this.field.value = String(Number(value.toPrecision(DIGITS)));
     this.field.removeAttribute("aria-invalid");
   }
 

@@ -1,6 +1,8 @@
 // The run in time, its portrait, and the return map, each at one of the points.
 
+import { pngOf } from "../draw/surface.js";
 import { button, element, labelled } from "../elements.js";
+import { download } from "../out.js";
 import { Pane, short } from "./pane.js";
 import { COLOURS, dotsOf, lineOf, markOf, panelOf, rangeAround } from "./panels.js";
 import { Portrait3d } from "../solid/turn.js";
@@ -219,12 +221,7 @@ export class PortraitPane extends Pane {
 
   async savePng() {
     if (!(this.axes?.length > 2)) return super.savePng();
-    const flat = this.canvas;
-    this.canvas = this.solid;
-    this.description ??= {};
-    await super.savePng();
-    this.canvas = flat;
-    this.description = null;
+    return download(`${this.name}.png`, await pngOf(this.solid), "image/png");
   }
 
   /** A start where the click is: in three dimensions at the nearest point of the run, in two with the other states as they are. */

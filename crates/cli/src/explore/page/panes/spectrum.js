@@ -1,6 +1,7 @@
 // Eigenvalues of the equilibria and multipliers of the orbit, in the complex plane, with their bounds.
 
 import { element } from "../elements.js";
+import { commandLine } from "../out.js";
 import { bounded, Pane } from "./pane.js";
 import { COLOURS, lineOf, markOf, panelOf, rangeAround } from "./panels.js";
 
@@ -48,6 +49,19 @@ export class SpectrumPane extends Pane {
   }
 
   resetZoom() {}
+
+  /** Eigenvalues, and the logarithms of multipliers, a row each. */
+  csv() {
+    const lines = [`# ${commandLine(this.answer.command, this.answer.options)}`, "of,what,real,imaginary,uncertainty"];
+    (this.states ?? []).filter((one) => one.eigenvalues).map(flat).forEach((state, i) => {
+      const name = state.symmetry ?? `equilibrium ${i + 1}`;
+      state.eigenvalues.forEach(([re, im], k) => lines.push([name, "eigenvalue", re, im, state.eigenvalue_uncertainty?.[k] ?? ""].join()));
+    });
+    for (const { log, angle } of multipliersOf(this.orbit)) {
+      if (log) lines.push(["orbit", "ln multiplier", log.value, Math.PI * (angle ?? 0), log.uncertainty ?? ""].join());
+    }
+    return `${lines.join("\n")}\n`;
+  }
 
   compose() {
     this.size = null;
