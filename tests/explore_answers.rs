@@ -282,6 +282,23 @@ fn answers_end_at_the_rows_that_are_allowed() {
     );
 }
 
+/// What a picture is made of is kept, too.
+#[test]
+fn runs_end_at_the_points_of_a_picture_that_are_allowed() {
+    let server = Server::start(&[]);
+    let endless =
+        json!({"driving": 0.102, "stiffness": 0.2, "until": 1e9, "points": 2, "plot": true});
+    let lines = server.stream("integrate", &endless).lines();
+    let said = |line: &Value| {
+        line["say"]
+            .as_str()
+            .is_some_and(|text| text.contains("the picture has as many points"))
+    };
+    assert!(lines.iter().any(said));
+    assert!(lines.iter().any(|line| line.get("picture").is_some()));
+    assert_eq!(lines.last(), Some(&json!({"ended": "interrupted"})));
+}
+
 #[test]
 fn a_model_is_described() {
     let server = Server::start(&[]);

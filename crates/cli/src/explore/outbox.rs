@@ -22,8 +22,8 @@ const ROOM: usize = 1 << 20;
 const BETWEEN: Duration = Duration::from_millis(100);
 /// Rows of one answer; more are a slip of the pen, and no page draws them.
 pub const MOST_ROWS: usize = 200_000;
-/// Numbers that are kept for the picture of one answer: four points for each step.
-const MOST_DRAWN: usize = 16_000_000;
+/// Numbers that are kept for the picture of one answer, of four points in each step: their description takes fifty bytes for each.
+const MOST_DRAWN: usize = 500_000;
 /// Cells of the rows of one answer.
 pub const MOST_CELLS: usize = 2_000_000;
 
@@ -140,6 +140,8 @@ impl Outbox {
     /// Nobody waits for it any more.
     pub fn leave(&self) {
         self.stop.store(true, Ordering::Relaxed);
+        // Who looks for room just now has seen this, or waits already.
+        drop(self.kept());
         self.room.notify_all();
         if let Some(queue) = &self.behind {
             queue.changed();
@@ -260,7 +262,7 @@ impl Outlet for Outbox {
             self.change(|kept| {
                 kept.exceeded = true;
                 if self.streams {
-                    kept.line(&json!({"say": too_many_rows()}));
+                    kept.line(&json!({"say": "stopped: the picture has as many points as one answer may have; ask for a shorter run"}));
                 }
             });
             self.stop.store(true, Ordering::Relaxed);
