@@ -18,7 +18,7 @@ struct Module {
 }
 
 /// The script of these modules, named by their files; `main` is the module that the others are for, and what it exports is
-/// [`NAME`] to what follows.
+/// `twinslipExplore` to what follows.
 ///
 /// # Errors
 /// A sentence with file and line, for a form that is not known, a file that is not there, and imports that go round in a circle.
