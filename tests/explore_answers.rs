@@ -211,7 +211,10 @@ fn pictures_special_points_messages_and_ends_are_lines() {
             line.as_object()
                 .and_then(|line| line.keys().next().cloned())
         };
-        answer.lines().iter().filter_map(kind).collect()
+        let mut kinds: Vec<String> = answer.lines().iter().filter_map(kind).collect();
+        // Rows go out when they are 20 ms old, in as many lines as that makes.
+        kinds.dedup();
+        kinds
     };
     let run = json!({"driving": 10, "stiffness": 0.14, "until": 2, "points": 3, "plot": true});
     let answer = server.stream("integrate", &run);
@@ -219,7 +222,10 @@ fn pictures_special_points_messages_and_ends_are_lines() {
         kinds(&answer),
         ["columns", "rows", "object", "picture", "say", "ended"]
     );
-    let picture = &answer.lines()[3]["picture"];
+    let lines = answer.lines();
+    let pictures = lines.iter().map(|line| &line["picture"]);
+    let picture = pictures.into_iter().find(|picture| !picture.is_null());
+    let picture = picture.expect("a picture");
     assert!(picture["blocks"][0]["columns"][0][0]["series"].is_array());
     let branch = json!({"of": "equilibria", "stiffness": 0.14, "plot": true});
     let answer = server.stream("branch", &branch);

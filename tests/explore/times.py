@@ -12,7 +12,7 @@ from playwright.sync_api import sync_playwright
 
 #: Pages that are opened anew, and places of a drag on each.
 PAGES, PLACES = 5, 60
-SYSTEMS = [("two interfaces", []), ("SI", ["--si"]), ("Lorenz", ["--system", "lorenz"]), ("van der Pol", ["--system", "van-der-pol"])]
+SYSTEMS = [("two interfaces", []), ("SI", ["--si"]), ("Lorenz", ["--system", "lorenz"])]
 
 
 def measured(browser, options):
@@ -26,7 +26,7 @@ def measured(browser, options):
         entries = lambda name, field: page.value(f"performance.getEntriesByName({name!r}).map((one) => one.{field})")
         paint += entries("first-contentful-paint", "startTime")
         curves += entries("twinslip curves", "duration")
-        box = page.page.locator(".pane-diagram canvas, .pane-along-x canvas").locator("visible=true").first.bounding_box()
+        box = page.page.locator(".pane-diagram canvas").first.bounding_box()
         at = lambda part: (box["x"] + box["width"] * (0.2 + 0.6 * part), box["y"] + box["height"] * (0.3 + 0.4 * part))
         page.page.mouse.move(*at(0))
         page.page.mouse.down()

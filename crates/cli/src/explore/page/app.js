@@ -351,6 +351,7 @@ export class App {
   }
 
   settle(shown, curves) {
+    this.asked = null;
     for (const index of shown) this.askSection(index);
     for (const which of ["x", "y"]) if (this.scene.axes[which]) this.askBranch(which);
     if (this.scene.fit) this.bands.ask();
