@@ -105,7 +105,7 @@ impl RegimeVerdict {
 /// told.
 ///
 /// # Errors
-/// Those of [`closing_in`].
+/// Those of [`periodicity`](super::periodicity()).
 pub fn verdict(
     field: &AnyField<'_>,
     surface: &Surface,
