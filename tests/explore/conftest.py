@@ -14,7 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("TWINSLIP", str(ROOT / "target/release/twinslip"))
 SHOTS = pathlib.Path(os.environ.get("TWINSLIP_SHOTS", ROOT / "target/explore-shots"))
 #: A page that has not come so far by then hangs.
-PATIENCE = 120.0
+PATIENCE = 300.0
 
 
 class Server:
@@ -57,7 +57,7 @@ class Explored:
         """Waits until all of the points is answered, and all curves and branches too if they are asked for."""
         behind = "" if curves else " && !/^(locus|branch|map|bands)/.test(slot)"
         works = f"[...twinslip.engine.current].some(([slot, one]) => one.busy{behind})"
-        still = f"globalThis.twinslip?.points && !twinslip.asked && !({works})"
+        still = f"globalThis.twinslip?.points && !twinslip.questions.asked && !({works})"
         self.wait(still)
         # What waits for the page to settle begins by then.
         self.page.wait_for_timeout(300)
@@ -127,6 +127,7 @@ def explored(browser):
 
     def open_page(address, width=1400, height=900, **options):
         context = browser.new_context(viewport={"width": width, "height": height}, accept_downloads=True, **options)
+        context.set_default_timeout(1000 * PATIENCE)
         contexts.append(context)
         pages.append(Explored(context.new_page(), address))
         return pages[-1]

@@ -1,4 +1,4 @@
-// The page as a whole: the scene, its panes, and what is asked when the scene changes.
+// The page as a whole: the scene, its panes, and what changes it.
 
 import { BranchPane } from "./panes/branches.js";
 import { DiagramPane } from "./panes/diagram.js";
@@ -9,31 +9,9 @@ import { SpectrumPane } from "./panes/spectrum.js";
 import { VerdictPane } from "./panes/verdict.js";
 import { frameOf } from "./frame.js";
 import { download } from "./out.js";
-import { rangeAround } from "./panes/panels.js";
+import { Questions } from "./questions.js";
 import { requests } from "./requests.js";
 import { fittedBy, fromAddress, History, parameterOf, rangeOf, sceneOf, toAddress, valuesAt, withAxes, withTold, withValue } from "./scene.js";
-
-/** After so many milliseconds without a move, what takes longer is asked too. */
-const SETTLED = 180;
-/** An answer amid a drag that takes longer is given up for a newer one. */
-const OVERDUE = 400;
-/** The run does not wait longer for the period of the orbit. */
-const PATIENCE = 20;
-/** Returns of the map, and those before. */
-const RETURNS = { returns: 600, skip: 400 };
-/** Cells of a map of regimes along each axis; of a fit, whose map is one for each draw. */
-const CELLS = { one: 24, fit: 10 };
-/** Curves that take least come first. */
-const QUICK = ["pitchfork", "saddle-node", "hopf", "period-doubling", "orbit-pitchfork", "torus", "orbit-saddle-node"];
-
-/** Curves of orbits of these models take minutes: they are computed when somebody asks for them. */
-function isCostly(model) {
-  const unequal = model.parameters.some(({ name }) => /_\d+$/.test(name));
-  const builtIn = !/\.toml$|\n/.test(model.law ?? "");
-  return model.kind === "interfaces" && (model.states.length > 3 || unequal || !builtIn);
-}
-
-const OF_ORBITS = /^(orbit-|period-doubling|torus)/;
 
 /** The panes of one point. */
 class PointPanes {
@@ -52,6 +30,7 @@ export class App {
     Object.assign(this, { root, engine, begin });
     this.systems = begin.systems ?? [];
     this.example = begin.example ?? "";
+    this.questions = new Questions(this);
     this.frame = frameOf(this);
     root.append(this.frame.element);
     engine.onChange((slots) => this.busy(slots));
@@ -68,7 +47,7 @@ export class App {
     this.scene = scene && this.fits(scene, model) ? scene : withTold(sceneOf(model, given), model, this.begin.scene);
     this.history = new History(this.scene);
     this.build();
-    this.recompute({ settled: true, curves: true });
+    this.questions.ask({ settled: true, curves: true });
   }
 
   /** Whether the parameters of a scene are those of the model. */
@@ -126,7 +105,7 @@ export class App {
       this.remember();
     }
     this.show();
-    this.recompute({ settled: commit, curves });
+    this.questions.ask({ settled: commit, curves });
   }
 
   change(parts) {
@@ -146,7 +125,7 @@ export class App {
       const points = scene.points.map((point, i) => (i === index ? { ...point, ...place } : point));
       scene = { ...scene, points, active: index };
     }
-    this.moved = performance.now();
+    this.questions.moved = performance.now();
     if (done) return this.setScene(scene, { curves: false });
     return this.dragged(scene);
   }
@@ -158,20 +137,8 @@ export class App {
       this.nextFrame = null;
       this.diagram.drawPoints();
       this.side.refresh();
-      this.askDragged();
+      this.questions.dragged();
     });
-  }
-
-  askDragged() {
-    const now = performance.now();
-    // Answers that were stopped by each new position would never come.
-    if (this.asked && now - this.asked < OVERDUE) {
-      this.again = true;
-      return;
-    }
-    this.asked = now;
-    this.again = false;
-    this.recompute({ settled: false, curves: false });
   }
 
   /** A value from a picture: few digits, and positive where it must be. */
@@ -187,7 +154,7 @@ export class App {
     const onAxis = name === this.scene.axes.x || name === this.scene.axes.y;
     const scene = withValue(this.scene, name, value);
     if (done) return this.setScene(scene, { curves: !onAxis });
-    this.moved = performance.now();
+    this.questions.moved = performance.now();
     return this.dragged(scene);
   }
 
@@ -265,7 +232,7 @@ export class App {
     this.scene = scene;
     this.remember();
     this.show();
-    this.recompute({ settled: true, curves: true });
+    this.questions.ask({ settled: true, curves: true });
   }
 
   /** Other options of the model; `anew` forgets the values of the parameters, which are another system's. */
@@ -330,188 +297,11 @@ export class App {
     this.engine.stopWhere((slot) => slot !== "model");
     this.side.rebuild();
     for (const pane of this.allPanes) pane.clear();
-    this.curvesOf = null;
+    this.questions.forget();
     return scene;
   }
 
-  // What is asked.
-
-  /** The scene has changed: quick answers at once, the others when it has settled. */
-  recompute({ settled, curves }) {
-    const shown = this.scene.compare ? [0, 1] : [0];
-    for (const index of shown) this.askPoint(index, !settled);
-    if (this.scene.compare && !shown.includes(this.scene.active)) this.scene.active = 0;
-    clearTimeout(this.settling);
-    // A drag that goes on leaves nothing behind that takes the processor.
-    if (!settled) this.engine.stopWhere((slot) => /^(section|branch)/.test(slot));
-    this.settling = setTimeout(() => {
-      if (!settled) for (const index of shown) this.askPoint(index, false);
-      this.settle(shown, curves);
-    }, settled ? 0 : SETTLED);
-  }
-
-  settle(shown, curves) {
-    this.asked = null;
-    for (const index of shown) this.askSection(index);
-    for (const which of ["x", "y"]) if (this.scene.axes[which]) this.askBranch(which);
-    if (this.scene.fit) this.bands.ask();
-    if (curves || !this.curvesOf) this.askCurves();
-  }
-
-  /** Equilibria, the orbit and a run at a point; amid a drag the run has no picture, and no orbit is looked for. */
-  askPoint(index, dragged) {
-    const { scene, model, engine } = this;
-    const panes = this.points[index];
-    const began = dragged ? this.moved : null;
-    const ticket = (panes.ticket = (panes.ticket ?? 0) + 1);
-    let drawn = 0;
-    // Both are there: the drag is answered.
-    const answered = () => {
-      drawn += 1;
-      if (drawn !== 2 || !began) return;
-      requestAnimationFrame(() => this.timed("drag", began));
-      this.asked = null;
-      if (this.again) this.askDragged();
-    };
-    panes.verdict.moved();
-    const known = { equilibria: null, orbit: null };
-    let until = null;
-    const run = () => {
-      const kept = dragged && !known.orbit?.ended && !scene.until ? panes.until : null;
-      const next = kept ?? requests.untilOf(scene, known.equilibria, known.orbit);
-      if (until && Math.abs(Math.log(next / until)) < 0.3) return;
-      until = next;
-      this.untilShown = until;
-      panes.until = until;
-      this.side.refresh();
-      const { command, options } = requests.run(scene, model, index, until, !dragged);
-      engine.ask(`run:${index}`, command, options, {
-        onUpdate: (answer) => {
-          if (answer.ended || answer.error) {
-            panes.run.takeRun(answer);
-            panes.portrait.takeRun(answer);
-            answered();
-            if (answer.ended && model.kind === "system") this.askAround(index, answer);
-          }
-        },
-      });
-    };
-    const orbit = requests.orbit(scene, model, index);
-    if (dragged) engine.stop(`orbit:${index}`);
-    else engine.ask(`orbit:${index}`, orbit.command, orbit.options, {
-      onUpdate: (answer) => {
-        if (!answer.ended && !answer.error) return;
-        known.orbit = answer;
-        panes.spectrum.takeOrbit(answer);
-        panes.verdict.takeAnswer("orbit", answer);
-        if (!scene.until && panes.ticket === ticket && (known.equilibria || answer.ended)) run();
-      },
-    });
-    // What takes least is asked last, and begun first.
-    const wanted = requests.equilibria(scene, model, index, this.boxes?.[index]?.of === model ? this.boxes[index].box : null);
-    engine.ask(`equilibria:${index}`, wanted.command, wanted.options, {
-      onUpdate: (answer) => {
-        if (!answer.ended && !answer.error) return;
-        known.equilibria = answer;
-        for (const pane of [panes.spectrum, panes.portrait]) pane.takeEquilibria(answer);
-        panes.verdict.takeAnswer("equilibria", answer);
-        answered();
-        if (scene.until) return;
-        if (known.orbit) return run();
-        setTimeout(() => {
-          if (panes.ticket === ticket && !until) run();
-        }, PATIENCE);
-      },
-    });
-    // Amid a drag the run goes as far as the one before, until more is known.
-    if (scene.until || (dragged && panes.until)) run();
-  }
-
-  /** All equilibria in a box around the run, for systems whose equilibria are found near a start alone. */
-  askAround(index, answer) {
-    const sides = this.model.states.map(({ name }) => {
-      const list = answer.column(name);
-      if (!list) return null;
-      const [lo, hi] = rangeAround([list]);
-      const width = hi - lo;
-      const digits = (x) => Number(x.toPrecision(2));
-      return `${name}=${digits(lo - width / 2)}:${digits(hi + width / 2)}`;
-    });
-    if (sides.some((side) => side === null) || sides.length > 6) return;
-    const box = sides.join(",");
-    this.boxes ??= {};
-    if (this.boxes[index]?.box === box && this.boxes[index].of === this.model) return;
-    this.boxes[index] = { box, of: this.model };
-    const { command, options } = requests.equilibria(this.scene, this.model, index, box);
-    const panes = this.points[index];
-    this.engine.ask(`equilibria:${index}`, command, options, {
-      onUpdate: (all) => {
-        if (!all.ended) return;
-        for (const pane of [panes.spectrum, panes.portrait]) pane.takeEquilibria(all);
-        panes.verdict.takeAnswer("equilibria", all);
-      },
-    });
-  }
-
-  askSection(index) {
-    const { scene, model, engine } = this;
-    if (model.states.length < 2) return;
-    const { command, options } = requests.section(scene, model, index, { ...RETURNS, lyapunov: true });
-    const panes = this.points[index];
-    engine.ask(`section:${index}`, command, options, {
-      background: true,
-      first: true,
-      onUpdate: (answer) => {
-        panes.returns.takeSection(answer);
-        if (answer.ended || answer.error) panes.verdict.takeAnswer("section", answer);
-      },
-    });
-  }
-
-  askBranch(which) {
-    const along = this.scene.axes[which];
-    for (const of of ["equilibria", "orbits"]) {
-      const { command, options } = requests.branch(this.scene, this.model, this.scene.active, of, along);
-      this.engine.ask(`branch:${which}:${of}`, command, options, {
-        background: true,
-        onUpdate: (answer) => this.alongs[which].takeBranch(of, answer),
-      });
-    }
-  }
-
-  /** The curves of the diagram, those that take least first. */
-  askCurves() {
-    const { scene, model } = this;
-    if (!scene.axes.y) return;
-    const all = [...model.loci].sort((a, b) => QUICK.indexOf(a) - QUICK.indexOf(b));
-    const waits = isCostly({ ...model, law: scene.given.law }) && !scene.orbits;
-    const kinds = waits ? all.filter((kind) => !OF_ORBITS.test(kind)) : all;
-    this.diagram.offerOrbits(waits);
-    const began = performance.now();
-    this.curvesOf = kinds;
-    const asked = kinds.map((kind) => {
-      const { command, options } = requests.locus(scene, model, kind);
-      return this.engine.ask(`locus:${kind}`, command, options, {
-        background: true,
-        onUpdate: (answer) => this.diagram.takeCurve(kind, answer),
-      });
-    });
-    Promise.all(asked).then((answers) => {
-      if (answers.every((answer) => answer)) this.timed("curves", began);
-    });
-  }
-
-  askMap() {
-    const { command, options } = requests.regimes(this.scene, this.model, this.scene.fit ? CELLS.fit : CELLS.one);
-    this.engine.ask("map", command, options, { background: true, first: true, onUpdate: (answer) => this.diagram.takeMap(answer) });
-  }
-
   // What is said and kept.
-
-  timed(name, began) {
-    const now = performance.now();
-    performance.measure(`twinslip ${name}`, { start: began, end: now });
-  }
 
   busy(slots) {
     this.frame.busy(slots);

@@ -165,7 +165,7 @@ function durationOf(equilibriaAnswer, orbitAnswer) {
 }
 
 /** All of them. */
-export const requests = { modelOptions, equilibria, orbit, run, section, branch, locus, regimes, bands, law, withFit, untilOf };
+export const requests = { modelOptions, systemOptions, equilibria, orbit, run, section, branch, locus, regimes, bands, law, withFit, untilOf };
 
 /** Two digits are enough for a time that is only shown; `up` rounds to more. */
 function rounded(x, up = false) {

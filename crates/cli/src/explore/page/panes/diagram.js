@@ -41,14 +41,14 @@ export class DiagramPane extends Pane {
     this.zoomsByWheel = true;
     this.curves = new Map();
     this.map = null;
+    this.drag = null;
     this.over = element("canvas", { class: "over", "aria-hidden": "true" });
     this.body.append(this.over);
     this.canvas.setAttribute("role", "application");
     this.canvas.setAttribute("aria-roledescription", "diagram");
-    this.mapButton = button("Map of regimes", () => app.askMap(), { title: "Compute the regime at each cell of a grid (sweep)" });
+    this.mapButton = button("Map of regimes", () => app.questions.askMap(), { title: "Compute the regime at each cell of a grid (sweep)" });
     this.orbitsButton = button("Curves of orbits", () => app.change({ orbits: true }), { title: "These take minutes here", hidden: true });
     this.heading.after(this.orbitsButton, this.mapButton);
-    this.drag = null;
     this.canvas.addEventListener("pointerdown", (event) => this.down(event));
     this.canvas.addEventListener("pointermove", (event) => this.move(event));
     for (const name of ["pointerup", "pointercancel"]) this.canvas.addEventListener(name, (event) => this.up(event));
@@ -74,6 +74,11 @@ export class DiagramPane extends Pane {
     this.compose();
   }
 
+  forgetMap() {
+    this.map = null;
+    this.compose();
+  }
+
   takeMap(answer) {
     this.take(answer);
     if (answer.pictures.length) this.map = answer.pictures.at(-1);
@@ -83,7 +88,8 @@ export class DiagramPane extends Pane {
   compose() {
     const { scene, model } = this.app;
     const { x, y } = scene.axes;
-    if (!y) return;
+    // The frame does not move beneath the pointer: a legend that grows waits for the end of the drag.
+    if (!y || this.drag !== null) return;
     const axis = (name) => {
       const one = parameterOf(model, name);
       return { label: axisLabel(one), log: one.log && rangeOf(scene, model, name)[0] > 0, range: rangeOf(scene, model, name) };
@@ -216,6 +222,7 @@ export class DiagramPane extends Pane {
     const index = this.drag;
     this.drag = null;
     this.app.movePoint(index, event.type === "pointerup" ? data : null, true);
+    this.compose();
   }
 
   key(event) {
