@@ -1,6 +1,7 @@
 // The bifurcation diagram along one parameter through the point: equilibria, and periodic orbits by their extremes.
 
 import { element } from "../elements.js";
+import { term } from "../glossary.js";
 import { Pane, short } from "./pane.js";
 import { axisLabel, COLOURS, lineOf, markOf, panelOf, rangeAroundMost } from "./panels.js";
 import { parameterOf, rangeOf } from "../scene.js";
@@ -116,8 +117,10 @@ export class BranchPane extends Pane {
     Object.assign(panel, { series, marks });
     if (strokes.size > 1) panel.strokes = [...strokes].map(([stroke, words]) => ({ stroke, label: words }));
     const found = ["equilibria", "orbits"].flatMap((of) => (this.answers[of] ? specialOf(this.answers[of]) : []));
-    const told = found.filter((one) => !["EP", "UZ"].includes(one.label)).map((one) => `${one.label} at ${short(one[this.along])}`);
-    this.words.textContent = [...new Set(told)].join(", ");
+    const points = found.filter((one) => !["EP", "UZ"].includes(one.label));
+    const told = [...new Set(points.map((one) => `${one.label} at ${short(one[this.along])}`))];
+    const words = told.flatMap((text, i) => [i ? ", " : "", term(text.split(" ")[0]), text.slice(text.indexOf(" "))]);
+    this.words.replaceChildren(...words);
     this.canvas.setAttribute("aria-label", `Branches along ${along.symbol ?? along.name}: ${told.join(", ") || "no bifurcation yet"}`);
     this.show(panel);
   }

@@ -28,7 +28,7 @@ class ParameterRow {
     this.slider.addEventListener("input", () => this.slid(false));
     this.slider.addEventListener("change", () => this.slid(true));
     this.field.addEventListener("change", () => this.typed());
-    this.unit = element("span", { class: "unit" }, one.unit ?? "");
+    this.unit = element("span", { class: "unit" }, (one.unit ?? "").replace("sigma", "σ"));
     this.element = element("div", { class: "parameter", title: words }, element("span", { class: "symbol" }, symbol), this.slider, this.field, this.unit);
   }
 
