@@ -65,6 +65,7 @@ impl TextModel {
         for name in free.iter().filter(|name| SCALES.contains(name)) {
             echo.insert((*name).to_owned(), Value::Null);
         }
+        let missing = [("driving", slab.driving), ("stiffness", slab.stiffness)];
         let mut model = TextModel {
             echo,
             time: None,
@@ -73,6 +74,10 @@ impl TextModel {
             slab: Some(slab),
             system,
         };
+        // What is not given has no value, whatever stands in for it until it varies.
+        for (name, _) in missing.iter().filter(|(_, given)| given.is_none()) {
+            model.vary(name);
+        }
         // So is that of damping, which a law has that has none.
         if free.contains(&DAMPING) {
             model.vary(DAMPING);

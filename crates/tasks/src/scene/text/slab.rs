@@ -28,6 +28,8 @@ pub struct TextSlab {
     places: Vec<Vec<usize>>,
     /// V_H, where it is given.
     pub(super) driving: Option<f64>,
+    /// K, where given.
+    pub(super) stiffness: Option<f64>,
     /// The units of the numbers.
     pub(super) units: Units,
 }
@@ -105,6 +107,7 @@ impl TextSlab {
             counts,
             places,
             driving,
+            stiffness,
             units,
         };
         let parameters: Vec<(&str, f64)> = names.iter().map(|(n, x)| (n.as_str(), *x)).collect();
