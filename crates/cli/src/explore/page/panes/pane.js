@@ -308,5 +308,5 @@ export function bounded(value, uncertainty) {
   if (!(uncertainty > 0)) return short(value);
   const digits = Math.floor(Math.log10(Math.abs(value) || 1)) - Math.floor(Math.log10(uncertainty)) + 1;
   const shown = digits > 17 ? String(value) : value.toPrecision(Math.min(Math.max(digits, 2), 17));
-  return `${shown} ± ${uncertainty >= 1e-3 && uncertainty < 1000 ? Number(uncertainty.toPrecision(1)) : uncertainty.toExponential(0)}`;
+  return `${shown} ± ${uncertainty >= 1e-4 && uncertainty < 1000 ? Number(uncertainty.toPrecision(1)) : uncertainty.toExponential(0)}`;
 }
