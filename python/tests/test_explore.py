@@ -237,7 +237,8 @@ def test_lines_come_while_it_computes_and_stop_ends_it() -> None:
     page.send({"type": "stop", "id": 7})
     wait_for(lambda: not answering())
     # Its computation ends, too, and what was sent before is all that comes.
-    wait_for(lambda: computing() == before)
+    # Threads of computations before may have ended meanwhile.
+    wait_for(lambda: computing() <= before)
     while not page.comm.sent.empty():
         assert not any(map(is_last, page.batch()["lines"]))
 
@@ -341,7 +342,8 @@ def test_a_widget_that_is_closed_or_shown_again_stops() -> None:
         page.batch()
         leave(page)
         assert answering() == []
-        wait_for(lambda: computing() == before)
+        # Threads of computations before may have ended meanwhile.
+    wait_for(lambda: computing() <= before)
     # A page that is still there is told, and may ask again.
     page = Page(SLAB)
     page.ask(1, "integrate", LONG)
