@@ -343,7 +343,7 @@ def test_a_widget_that_is_closed_or_shown_again_stops() -> None:
         leave(page)
         assert answering() == []
         # Threads of computations before may have ended meanwhile.
-    wait_for(lambda: computing() <= before)
+        wait_for(lambda: computing() <= before)
     # A page that is still there is told, and may ask again.
     page = Page(SLAB)
     page.ask(1, "integrate", LONG)
