@@ -179,10 +179,12 @@ impl Scene<'_> {
         ]
     }
 
-    fn rest(&self, until: f64) -> Vec<Asked> {
+    fn rest(&self, until: Option<f64>) -> Vec<Asked> {
         let mut all: Vec<Asked> = Vec::new();
-        let run = [("until", json!(until)), ("plot", json!(true))];
-        all.push(("run:0".into(), "integrate", with(self.system(&[]), run)));
+        if let Some(until) = until {
+            let run = [("until", json!(until)), ("plot", json!(true))];
+            all.push(("run:0".into(), "integrate", with(self.system(&[]), run)));
+        }
         let section = [
             ("returns", json!(600)),
             ("skip", json!(400)),
@@ -218,7 +220,7 @@ impl Scene<'_> {
     }
 
     /// How long a run is shown: some periods of the orbit, or some times of what grows or decays most slowly.
-    fn until(&self, first: &Options) -> f64 {
+    fn until(&self, first: &Options) -> Option<f64> {
         let result = |place: &str| {
             let lines = first.get(place).and_then(Value::as_array);
             let object = lines
@@ -233,7 +235,7 @@ impl Scene<'_> {
             .or(period["value"].as_f64())
             .filter(|&x| x > 0.0)
         {
-            return rounded(8.0 * period);
+            return Some(rounded(8.0 * period));
         }
         let eigenvalues = result("equilibria:0")["equilibria"][0]["eigenvalues"].clone();
         let parts = |at: usize| {
@@ -256,11 +258,12 @@ impl Scene<'_> {
         } else {
             0.0
         };
-        rounded(match (slow > 0.0, turning > 0.0) {
+        let until = match (slow > 0.0, turning > 0.0) {
             (true, true) => slow.max(turning).min(10.0 * turning),
-            (false, false) => 20.0,
+            (false, false) => self.model["duration"].as_f64()?,
             _ => slow.max(turning),
-        })
+        };
+        Some(rounded(until))
     }
 
     /// All equilibria in a box around the run, for systems whose equilibria are found near a start alone.

@@ -261,8 +261,9 @@ export class App {
     const [from, to] = [await this.readModel({ ...plain, ...(!si && { si: true }) }), await this.readModel({ ...plain, ...(si && { si: true }) })];
     if (!from || !to) return;
     const factor = (name) => {
-      const [a, b] = [parameterOf(from, name)?.value, parameterOf(to, name)?.value];
-      return a && b ? b / a : 1;
+      const [a, b] = [parameterOf(from, name), parameterOf(to, name)];
+      // What is 0 to begin with has its range in both units.
+      return a.value && b.value ? b.value / a.value : b.range[1] / a.range[1];
     };
     const converted = (values) => Object.fromEntries(
       Object.entries(values).filter(([name]) => parameterOf(to, name)).map(([name, value]) => [name, Number((value * factor(name)).toPrecision(15))]),

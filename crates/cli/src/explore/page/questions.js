@@ -103,7 +103,11 @@ export class Questions {
     let until = null;
     const run = () => {
       const kept = dragged && !known.orbit?.ended && !scene.until ? panes.until : null;
-      const next = kept ?? requests.untilOf(scene, known.equilibria, known.orbit);
+      const next = kept ?? requests.untilOf(scene, model, known.equilibria, known.orbit);
+      if (!next) {
+        panes.run.ask();
+        return;
+      }
       if (until && Math.abs(Math.log(next / until)) < 0.3) return;
       until = next;
       this.app.untilShown = until;

@@ -142,16 +142,18 @@ function withFit(scene, options) {
 }
 
 /**
- * How long a run is shown: some periods of the orbit, else some times of the slowest that grows or decays, else of the fastest that turns.
+ * How long a run is shown: some periods of the orbit, else some times of the slowest that grows or decays, else of the fastest that turns;
+ * null where nothing tells.
  */
-function untilOf(scene, equilibriaAnswer, orbitAnswer) {
+function untilOf(scene, model, equilibriaAnswer, orbitAnswer) {
   if (scene.until) return scene.until;
   // All changes of a program are shown, and what follows the last.
   const changed = 1.2 * Math.max(0, ...(changesOf(scene.program) ?? []).map(({ to }) => to));
-  return rounded(Math.max(changed, durationOf(equilibriaAnswer, orbitAnswer)), changed > 0);
+  const until = Math.max(changed, durationOf(model, equilibriaAnswer, orbitAnswer));
+  return until > 0 ? rounded(until, changed > 0) : null;
 }
 
-function durationOf(equilibriaAnswer, orbitAnswer) {
+function durationOf(model, equilibriaAnswer, orbitAnswer) {
   const period = orbitAnswer?.result?.orbit?.period;
   const turns = typeof period === "number" ? period : period?.value;
   if (turns > 0) return 8 * turns;
@@ -161,7 +163,7 @@ function durationOf(equilibriaAnswer, orbitAnswer) {
   const slow = real.length ? 8 / Math.min(...real) : 0;
   const turning = imaginary > 0 ? (12 * 2 * Math.PI) / imaginary : 0;
   if (slow && turning) return Math.min(Math.max(slow, turning), 10 * turning);
-  return slow || turning || 20;
+  return slow || turning || model.duration || 0;
 }
 
 /** All of them. */

@@ -59,6 +59,7 @@ pub(super) fn described(options: &ModelOptions) -> Result<ModelDescription> {
         interfaces: Some(count),
         loci: interfaces.loci(slab),
         surface: None,
+        duration: None,
         text: None,
         si: slab.si,
         time_unit: unit(&units, Quantity::Time),

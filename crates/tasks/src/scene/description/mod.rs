@@ -38,6 +38,8 @@ pub struct ModelDescription {
     pub loci: Vec<&'static str>,
     /// A section for `section`, STATE=VALUE; `None` where its default will do, or where a system comes to rest.
     pub surface: Option<String>,
+    /// How long a run from the system's own start may be shown, where its equilibria and orbits do not say; `None` where these do.
+    pub duration: Option<f64>,
     /// The text of a user-defined system.
     pub text: Option<String>,
     /// Whether all numbers are in SI.

@@ -61,9 +61,17 @@ pub(super) fn described(options: &ModelOptions, path: &Path) -> Result<ModelDesc
             true => None,
             false => surface(&model),
         },
+        duration: duration(&model),
         si: false,
         time_unit: None,
         parameters,
         text: Some(text.into_owned()),
     })
+}
+
+/// A hundred times as long as the system takes to move by about 1 in its own units.
+fn duration(model: &TextModel) -> Option<f64> {
+    let start = model.start(None).ok()?;
+    let units = model.motion_units_of_run(&start).ok()?;
+    Some(100.0 * units.time).filter(|duration| duration.is_finite() && *duration > 0.0)
 }

@@ -63,6 +63,13 @@ export class RunPane extends Pane {
     this.index = index;
   }
 
+  /** Says that nothing tells how long a run is of interest. */
+  ask() {
+    this.problem.textContent = "Neither an equilibrium nor an orbit says how long a run is of interest: give its end, Until.";
+    this.problem.hidden = false;
+    this.show(null);
+  }
+
   takeRun(answer) {
     // A run that breaks off has come so far.
     if (!this.take(answer) && answer.rows.length < 2) return;
