@@ -12,7 +12,7 @@ use twinslip::friction::AnyLaw;
 use twinslip_tasks::scene::{Command, about, plain, sentence, shipped, shipped_systems};
 
 /// Headings of the options that make a model.
-const MODEL: [&str; 2] = ["Model", "SI units"];
+pub const MODEL: [&str; 2] = ["Model", "SI units"];
 /// The words of the glossary.
 const GLOSSARY: &str = include_str!("../../../../docs/glossary.md");
 /// A system that those who write their own may begin with.

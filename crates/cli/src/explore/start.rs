@@ -90,21 +90,6 @@ struct Scene<'a> {
     model: &'a Value,
 }
 
-/// Options of the model that are no parameters.
-const PLAIN: [&str; 11] = [
-    "system",
-    "law",
-    "interfaces",
-    "clusters",
-    "si",
-    "slip_length",
-    "normal_stress",
-    "reference_rate",
-    "time_unit",
-    "shear_modulus",
-    "shear_wave_speed",
-];
-
 impl Scene<'_> {
     fn parameters(&self) -> impl Iterator<Item = &Value> {
         self.model["parameters"].as_array().into_iter().flatten()
@@ -128,7 +113,9 @@ impl Scene<'_> {
             .and_then(Value::as_array)
             .cloned()
             .unwrap_or_default();
-        options.retain(|name, _| PLAIN.contains(&name.as_str()));
+        let plain = self.model["options"].as_array().into_iter().flatten();
+        let plain: Vec<&str> = plain.filter_map(Value::as_str).collect();
+        options.retain(|name, _| plain.contains(&name.as_str()));
         let name_of = |set: &Value| {
             let text = set.as_str().unwrap_or_default();
             text.split('=').next().unwrap_or_default().trim().to_owned()

@@ -334,7 +334,7 @@ export class App {
   /** The names of options that make a system in Python. */
   systemNames() {
     const own = this.model.parameters.filter((one) => one.option).map((one) => one.name);
-    return [...own, "system", "law", "interfaces", "clusters", "si", "slip_length", "normal_stress", "reference_rate", "time_unit", "shear_modulus", "shear_wave_speed"];
+    return [...own, ...this.model.options];
   }
 
   /** The page as it stands, as one file that needs no server. */

@@ -3,21 +3,6 @@
 import { changesOf } from "./panes/program.js";
 import { fittedBy, parameterOf, rangeOf, valuesAt } from "./scene.js";
 
-/** Options that say what is studied; all else says how. */
-const MODEL_OPTIONS = [
-  "system",
-  "law",
-  "interfaces",
-  "clusters",
-  "si",
-  "slip_length",
-  "normal_stress",
-  "reference_rate",
-  "time_unit",
-  "shear_modulus",
-  "shear_wave_speed",
-];
-
 /** The options that `api/model` is asked with. */
 function modelOptions(scene) {
   const options = {};
@@ -28,7 +13,7 @@ function modelOptions(scene) {
 /** The options of the system at a point, without the parameters named. */
 function systemOptions(scene, model, index, without = []) {
   const options = {};
-  for (const name of MODEL_OPTIONS) if (scene.given[name] !== undefined) options[name] = scene.given[name];
+  for (const name of model.options) if (scene.given[name] !== undefined) options[name] = scene.given[name];
   const given = scene.given.set === undefined ? [] : [scene.given.set].flat();
   const set = [];
   const values = valuesAt(scene, model, index);
