@@ -61,7 +61,10 @@ pub(super) fn described(options: &ModelOptions, path: &Path) -> Result<ModelDesc
             true => None,
             false => surface(&model),
         },
-        duration: duration(&model),
+        duration: match timed {
+            true => None,
+            false => duration(&model),
+        },
         si: false,
         time_unit: None,
         parameters,
