@@ -1,7 +1,7 @@
 //! What `twinslip explore` answers is what the command line prints.
 
 use crate::command;
-use command::explore::{Answer, Server};
+use command::explore::{Answer, COMMANDS, Server};
 use command::{csv, folder, run};
 use serde_json::{Value, json};
 use twinslip_cli::internals::explore_words as words;
@@ -336,16 +336,7 @@ fn every_option_is_either_allowed_or_refused() {
     let file = place.join("secret.toml");
     std::fs::write(&file, "secret").expect("written");
     let path = file.to_str().expect("UTF-8");
-    for command in [
-        "law",
-        "integrate",
-        "equilibria",
-        "orbit",
-        "section",
-        "branch",
-        "locus",
-        "sweep",
-    ] {
+    for command in COMMANDS {
         for option in options(command) {
             let name = option.name.as_str();
             let asked = |value: Value| {

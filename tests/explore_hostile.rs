@@ -2,7 +2,7 @@
 //! clients that stop in the midst. The server answers the next good request as the first, has grown by little and has touched no file.
 
 use crate::command;
-use command::explore::Server;
+use command::explore::{COMMANDS, Server};
 use command::{contents, folder};
 use serde_json::json;
 use std::io::{Read, Write};
@@ -58,18 +58,8 @@ fn one<'a>(random: &mut Random, all: &[&'a str]) -> &'a str {
     all[random.below(all.len() as u64) as usize]
 }
 
-const COMMANDS: [&str; 10] = [
-    "law",
-    "integrate",
-    "equilibria",
-    "orbit",
-    "section",
-    "branch",
-    "locus",
-    "sweep",
-    "model",
-    "save",
-];
+/// What it may ask for beside the commands.
+const ALSO: [&str; 2] = ["model", "save"];
 const VALUES: [&str; 30] = [
     "null",
     "true",
@@ -148,7 +138,10 @@ fn request(random: &mut Random, server: &Server, names: &[String]) -> Vec<u8> {
             "\u{1F980}",
         ],
     );
-    let own = format!("{base}api/{}", one(random, &COMMANDS));
+    let own = format!(
+        "{base}api/{}",
+        one(random, &[&COMMANDS[..], &ALSO].concat())
+    );
     let path = match random.below(10) {
         0 => one(
             random,

@@ -1,7 +1,7 @@
 //! Who may ask the server of `twinslip explore`, and what for: the page that it has sent, and nobody else.
 
 use crate::command;
-use command::explore::{Answer, Server};
+use command::explore::{Answer, COMMANDS, Server};
 use command::folder;
 use serde_json::{Value, json};
 
@@ -552,16 +552,7 @@ fn no_word_of_a_request_opens_a_file() {
         assert!(made.expect("mkfifo").success());
     }
     let server = Server::start_in(&place, &[]);
-    for command in [
-        "law",
-        "integrate",
-        "equilibria",
-        "orbit",
-        "section",
-        "branch",
-        "locus",
-        "sweep",
-    ] {
+    for command in COMMANDS {
         for option in twinslip_cli::options(command) {
             for name in names {
                 for path in [

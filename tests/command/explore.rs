@@ -12,6 +12,18 @@ use std::time::Duration;
 /// Nobody waits longer for an answer.
 const PATIENCE: Duration = Duration::from_secs(120);
 
+/// What a page may ask for.
+pub const COMMANDS: [&str; 8] = [
+    "law",
+    "integrate",
+    "equilibria",
+    "orbit",
+    "section",
+    "branch",
+    "locus",
+    "sweep",
+];
+
 /// A server that runs until it is dropped.
 pub struct Server {
     pub child: Child,

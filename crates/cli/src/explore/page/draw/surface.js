@@ -102,6 +102,14 @@ export class CanvasSurface {
     context.setLineDash(dash);
     // Overlapping pieces would show where a line is seen through, and a dash would begin anew.
     const most = dash.length || opacity < 1 ? Infinity : PIECE;
+    this.trace(xy, most);
+    context.stroke();
+    context.restore();
+  }
+
+  /** Makes a path, broken where a number is missing; strokes it after so many points each, and begins anew. */
+  trace(xy, most = Infinity) {
+    const { context } = this;
     let [open, count] = [false, 0];
     context.beginPath();
     for (let i = 0; i + 1 < xy.length; i += 2) {
@@ -120,8 +128,6 @@ export class CanvasSurface {
         count = 0;
       }
     }
-    context.stroke();
-    context.restore();
   }
 
   /** Fills the areas with these corners. */
@@ -129,18 +135,7 @@ export class CanvasSurface {
     const { context } = this;
     context.save();
     Object.assign(context, { fillStyle: colour, globalAlpha: opacity });
-    context.beginPath();
-    let open = false;
-    for (let i = 0; i + 1 < xy.length; i += 2) {
-      const [x, y] = [xy[i], xy[i + 1]];
-      if (!(x === x && y === y)) {
-        open = false;
-        continue;
-      }
-      if (open) context.lineTo(x, y);
-      else context.moveTo(x, y);
-      open = true;
-    }
+    this.trace(xy);
     context.fill();
     context.restore();
   }

@@ -19,7 +19,6 @@ export function themeOf(node) {
     grid: get("--grid"),
     background: get("--pane"),
     accent: get("--accent"),
-    dark: get("--dark") === "1",
   };
 }
 

@@ -63,7 +63,7 @@ export function rangeAround(lists, log = false) {
     const margin = Math.max(Math.log(hi / lo) * 0.04, 1e-6);
     return [lo * Math.exp(-margin), hi * Math.exp(margin)];
   }
-  const margin = (hi - lo) * 0.05 || Math.max(Math.abs(hi) * 1e-6, 1e-12);
+  const margin = (hi - lo) * 0.05 || Math.abs(hi) * 1e-6 || 1;
   return [lo - margin, hi + margin];
 }
 
