@@ -275,9 +275,15 @@ impl Scene<'_> {
             let (lo, hi) = numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| {
                 (lo.min(x), hi.max(x))
             });
-            let half = 0.5 * (hi - lo);
-            let name = state["name"].as_str()?;
-            (half > 0.0).then(|| format!("{name}={}:{}", rounded(lo - half), rounded(hi + half)))
+            let (half, name) = (0.5 * (hi - lo), state["name"].as_str()?);
+            // Digits that the width has, however far from 0 the box is.
+            let unit = 10f64.powf((hi - lo).log10().floor() - 1.0);
+            let digits = |count: f64| format!("{:.11e}", count * unit).parse::<f64>();
+            let ends = [((lo - half) / unit).floor(), ((hi + half) / unit).ceil()];
+            let [Ok(from), Ok(to)] = ends.map(digits) else {
+                return None;
+            };
+            (half > 0.0).then(|| format!("{name}={from}:{to}"))
         };
         let states = self.model["states"]
             .as_array()

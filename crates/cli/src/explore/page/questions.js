@@ -164,8 +164,10 @@ export class Questions {
       if (!list) return null;
       const [lo, hi] = rangeAround([list]);
       const width = hi - lo;
-      const digits = (x) => Number(x.toPrecision(2));
-      return `${name}=${digits(lo - width / 2)}:${digits(hi + width / 2)}`;
+      // Digits that the width has, however far from 0 the box is.
+      const unit = 10 ** (Math.floor(Math.log10(width)) - 1);
+      const digits = (x) => Number((x * unit).toPrecision(12));
+      return `${name}=${digits(Math.floor((lo - width / 2) / unit))}:${digits(Math.ceil((hi + width / 2) / unit))}`;
     });
     if (sides.some((side) => side === null) || sides.length > 6) return;
     const box = sides.join(",");

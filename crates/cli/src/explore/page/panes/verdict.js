@@ -71,12 +71,12 @@ function ofSection(answer) {
 /** The verdict in one or two words, and its tone. */
 function headline({ equilibria, orbit, section }) {
   const regime = section?.result?.regime;
-  if (regime && regime !== "undecided") return regime;
+  if (regime) return regime;
+  // Where there is no return map, or not yet.
   const found = orbit?.result?.orbit;
-  if (!section && found?.verdict === "stable") return "periodic";
+  if (found?.verdict === "stable") return "periodic";
   const stable = (equilibria?.result?.equilibria ?? []).some((one) => one.verdict === "stable");
-  if (!section && stable && !found) return "steady";
-  return regime ?? "not yet known";
+  return stable && !found ? "steady" : "not yet known";
 }
 
 export class VerdictPane extends Pane {
