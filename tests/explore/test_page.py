@@ -115,6 +115,19 @@ def test_si_units_are_the_same_point(slab, explored):
     assert page.value("twinslip.values().driving") == pytest.approx(20, rel=1e-12)
 
 
+def test_what_is_0_to_begin_with_has_its_size_in_si(slab, explored):
+    page = explored(slab.address)
+    page.idle()
+    field = page.page.get_by_role("textbox", name=re.compile("^Radiation damping.*value"))
+    field.fill("1e-4")
+    field.press("Enter")
+    page.idle()
+    page.page.get_by_label("SI units").check()
+    page.idle()
+    # a sigma / V*, with a = 0.0349, sigma = 1 MPa, V* = 1 um/s.
+    assert page.value("twinslip.values().damping") == pytest.approx(1e-4 * 0.0349 * 1e6 / 1e-6, rel=1e-12)
+
+
 def test_another_law_and_symmetry(slab, explored):
     page = explored(slab.address)
     page.idle()
@@ -216,6 +229,20 @@ def test_a_server_of_an_own_system(served, explored, tmp_path):
     page.idle()
     assert page.value("twinslip.model.title") == "Brusselator"
     assert page.answer("orbit:0")["object"]["result"]["orbit"]["verdict"] == "stable"
+
+
+def test_a_system_far_from_zero(served, explored, tmp_path):
+    far = OWN.replace("x^2*y", "(x - 1e6)^2*(y - 5e6)").replace("(b + 1)*x", "(b + 1)*(x - 1e6)").replace('"b*x', '"b*(x - 1e6)')
+    far = far.replace("x = 1.0", "x = 1000001.0").replace("y = 1.0", "y = 5000001.0")
+    (tmp_path / "far.toml").write_text(far)
+    page = explored(served("--system", str(tmp_path / "far.toml")).address)
+    page.idle()
+    page.wait("twinslip.engine.current.get('equilibria:0').answer.options.box")
+    page.idle()
+    lo, hi = page.answer("equilibria:0")["options"]["box"].split(",")[0].split("=")[1].split(":")
+    assert 1e6 - 10 < float(lo) < float(hi) < 1e6 + 10
+    assert len(page.answer("equilibria:0")["object"]["result"]["equilibria"]) == 1
+    assert page.pane("verdict").locator(".headline").inner_text().lower() == "periodic"
 
 
 def test_a_map_of_regimes(slab, explored):
