@@ -177,13 +177,13 @@ def test_the_notebook_stays_as_it_is(notebook):
 def test_its_theme_is_that_of_the_notebook(notebook):
     page = notebook(SLAB)
     page.answered("equilibria")
-    ink = "getComputedStyle(document.querySelector('.twinslip')).getPropertyValue('--dark').trim()"
-    assert page.page.evaluate(ink) == "0"
+    scheme = "getComputedStyle(document.querySelector('.twinslip')).colorScheme"
+    assert page.page.evaluate(scheme) == "light"
     page.page.evaluate("document.body.dataset.jpThemeLight = 'false'")
     for _ in range(3):
         page.page.get_by_role("button", name="Theme").click()
     assert page.page.get_by_role("button", name="Theme").inner_text() == "Theme: auto"
-    assert page.page.evaluate(ink) == "1"
+    assert page.page.evaluate(scheme) == "dark"
 
 
 def test_columns_follow_the_width_of_the_cell(notebook):
