@@ -1,6 +1,7 @@
 //! How well one law does beside others: by information and by prediction.
 
-use super::problem::{Problem, Record};
+use super::problem::Problem;
+use super::record::Record;
 use super::{Autoregression, Fit, MAX_ITERATIONS, NEGLIGIBLE};
 use crate::error::Result;
 
@@ -22,13 +23,20 @@ pub struct Comparison {
 
 /// AICc of a fit (Hurvich and Tsai 1989): -2 ln L + 2 k n/(n - k - 1), with the likelihood of residuals that are an autoregression; its
 /// coefficients and the variance count as parameters.
-pub fn akaike(record: &Record, fit: &Fit) -> f64 {
-    let pairs = record.friction.iter().zip(&fit.fitted);
-    let residuals: Vec<f64> = pairs.map(|(measured, made)| measured - made).collect();
-    let noise = Autoregression::of(&residuals);
-    let n = residuals.len() as f64;
-    let k = (fit.parameters.len() + noise.coefficients.len() + 1) as f64;
-    n * noise.innovation.ln() + 2.0 * k * n / (n - k - 1.0)
+pub fn akaike<'a>(records: impl IntoIterator<Item = &'a Record>, fit: &Fit) -> f64 {
+    let mut fitted = fit.fitted.iter();
+    let (mut all, mut likelihood, mut count) = (0.0, 0.0, fit.parameters.len());
+    for record in records {
+        let pairs = record.friction.iter().zip(&mut fitted);
+        let residuals: Vec<f64> = pairs.map(|(measured, made)| measured - made).collect();
+        let noise = Autoregression::of(&residuals);
+        let n = residuals.len() as f64;
+        likelihood += n * noise.innovation.ln();
+        all += n;
+        count += noise.coefficients.len() + 1;
+    }
+    let k = count as f64;
+    likelihood + 2.0 * k * all / (all - k - 1.0)
 }
 
 /// The root of the mean square of prediction over parts left out in turn, each of many short blocks; `None` where one cannot be fitted without.
@@ -39,27 +47,36 @@ pub fn cross_validation<const N: usize>(
     problem: &Problem<'_, N>,
     fit: &Fit,
 ) -> Result<Option<f64>> {
-    let count = problem.record.times.len();
+    let rows = problem.rows();
     let mut squares = 0.0;
-    let length = count.div_ceil(PARTS * BLOCKS_EACH);
+    let is_held = |part: usize, count: usize, i: usize| {
+        i / count.div_ceil(PARTS * BLOCKS_EACH) % PARTS == part
+    };
     for part in 0..PARTS {
-        let held = || (0..count).filter(|i| i / length % PARTS == part);
-        let mut record = problem.record.clone();
-        held().for_each(|i| record.weights[i] = 0.0);
-        let without = Problem {
-            record: &record,
-            parameters: problem.parameters.clone(),
-            free: problem.free.clone(),
-            ..*problem
-        };
+        let mut records: Vec<Record> = Vec::with_capacity(rows.len());
+        for one in &problem.records {
+            let mut record = one.record.clone();
+            let count = record.weights.len();
+            let all = record.weights.iter_mut().enumerate();
+            all.filter(|(i, _)| is_held(part, count, *i))
+                .for_each(|(_, weight)| *weight = 0.0);
+            records.push(record);
+        }
+        let without = problem.with(&records);
         let effort = (MAX_ITERATIONS, NEGLIGIBLE);
         let minimum = without.minimum(&fit.variables, &without.bounds(), effort)?;
         let Ok(friction) = without.friction(&minimum.variables) else {
             return Ok(None);
         };
-        squares += held()
-            .map(|i| (problem.record.friction[i] - friction[i]).powi(2))
-            .sum::<f64>();
+        for (one, rows) in problem.records.iter().zip(&rows) {
+            let pairs = one.record.friction.iter().zip(&friction[rows.clone()]);
+            let held = pairs
+                .enumerate()
+                .filter(|(i, _)| is_held(part, rows.len(), *i));
+            squares += held
+                .map(|(_, (own, made))| (own - made).powi(2))
+                .sum::<f64>();
+        }
     }
-    Ok(Some((squares / count as f64).sqrt()))
+    Ok(Some((squares / problem.samples() as f64).sqrt()))
 }

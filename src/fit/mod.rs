@@ -5,24 +5,38 @@
 //! ([`Autoregression`]), and 95 % intervals from profiles of the sum of squares ([`Profile`]).
 
 mod compare;
+mod free;
+mod holds;
 mod least_squares;
+mod loss;
+mod minima;
 mod noise;
+mod posterior;
 mod problem;
 mod profile;
+mod record;
 mod response;
 mod sensitivities;
+mod shared;
 mod slider;
 mod start;
 mod verdict;
 
 pub use compare::{Comparison, akaike, cross_validation};
+pub use free::{DRIFT, FreeParameter, Scale};
+pub use holds::{Estimate, Hold, Levels, healing_rate, holds, holds_of};
 pub use least_squares::{Evaluate, Minimum, Residuals, minimise};
+pub use loss::Loss;
+pub use minima::minima;
 pub use noise::Autoregression;
-pub use problem::{DRIFT, FreeParameter, Loss, Problem, Record, Scale};
+pub use posterior::{Marginal, Posterior, Prior, QUANTILES, Sampling, posterior};
+pub use problem::{FittedRecord, Problem};
 use profile::FARTHEST;
 pub use profile::{Profile, ProfilePoint};
+pub use record::Record;
 pub use response::{Response, steady_friction};
 pub use sensitivities::by_sensitivities;
+pub use shared::Agreement;
 pub use slider::{Motion, Sliders, Stretch};
 pub use start::{Guess, guesses, spread};
 pub use verdict::{Verdict, undecided};
@@ -31,6 +45,7 @@ use crate::error::{Error, Result};
 use crate::number::singular_values;
 use nalgebra::DMatrix;
 use statrs::distribution::{ContinuousCDF, StudentsT};
+use std::ops::Range;
 
 /// Samples that starts are compared by.
 const THIN: usize = 400;
@@ -69,7 +84,7 @@ pub struct Fit {
     pub parameters: Vec<FittedParameter>,
     /// Of the variables: logarithms, where these were varied.
     pub correlation: DMatrix<f64>,
-    /// The friction that was fitted, at all times.
+    /// The friction that was fitted, at all times of all records.
     pub fitted: Vec<f64>,
     /// The root of the mean square of measured less fitted friction.
     pub rms: f64,
@@ -77,8 +92,8 @@ pub struct Fit {
     pub degrees_of_freedom: usize,
     /// White samples that know as much of a mean as these.
     pub effective_samples: f64,
-    /// The noise.
-    pub noise: Autoregression,
+    /// The noise of each record, as its residuals count.
+    pub noise: Vec<Autoregression>,
     /// How many times the friction was computed.
     pub evaluations: usize,
     /// How the sum of squares grows along each parameter; none where intervals are of the linear kind.
@@ -116,7 +131,7 @@ pub fn fit<const N: usize>(
     starts: &[Vec<f64>],
     intervals: Intervals,
 ) -> Result<Fit> {
-    let (count, free) = (problem.record.times.len(), problem.free.len());
+    let (count, free) = (problem.samples(), problem.free.len());
     if count <= free {
         return Err(Error::Input(format!(
             "{count} samples do not determine {free} parameters"
@@ -192,13 +207,10 @@ fn best_start<const N: usize>(
     starts: &[Vec<f64>],
     bounds: &[(f64, f64)],
 ) -> Result<(Vec<f64>, usize)> {
-    let record = problem.record.thinned_along(problem.motion, THIN);
-    let thin = Problem {
-        record: &record,
-        parameters: problem.parameters.clone(),
-        free: problem.free.clone(),
-        ..*problem
-    };
+    let records = problem.records.iter();
+    let thinned = records.map(|one| one.record.thinned_along(one.motion, THIN));
+    let thinned: Vec<Record> = thinned.collect();
+    let thin = problem.with(&thinned);
     let variables = starts.iter().map(|values| thin.variables(values));
     let mut ranked: Vec<(f64, Vec<f64>)> = variables.map(|x| (thin.cost(&x), x)).collect();
     ranked.retain(|(cost, _)| cost.is_finite());
@@ -247,7 +259,7 @@ pub(crate) struct Errors {
     /// The variance of a residual that counts once.
     pub variance: f64,
     pub effective_samples: f64,
-    noise: Autoregression,
+    noise: Vec<Autoregression>,
     fitted: Vec<f64>,
     rms: f64,
 }
@@ -257,12 +269,14 @@ impl Errors {
         let jacobian = &minimum.residuals.jacobian;
         let (count, free) = jacobian.shape();
         let fitted = problem.friction(&minimum.variables)?;
-        let pairs = || problem.record.friction.iter().zip(&fitted);
-        let squares: f64 = pairs()
-            .map(|(measured, made)| (measured - made).powi(2))
-            .sum();
-        let counted = minimum.residuals.values.as_slice();
-        let noise = Autoregression::of(counted);
+        let pairs = problem.measured().zip(&fitted);
+        let squares: f64 = pairs.map(|(own, made)| (own - made).powi(2)).sum();
+        let rows = problem.rows();
+        let counted = |rows: &Range<usize>| &minimum.residuals.values.as_slice()[rows.clone()];
+        let noise: Vec<Autoregression> = rows
+            .iter()
+            .map(|rows| Autoregression::of(counted(rows)))
+            .collect();
         let variance = minimum.residuals.cost() / (count - free) as f64;
         // Columns of one length: parameters have units.
         let norms = jacobian.column_iter().map(|column| column.norm());
@@ -296,7 +310,13 @@ impl Errors {
             *x /= sizes[i] * sizes[j];
         }
         let white = &inverse * variance;
-        let sandwich = &inverse * noise.covariance_of(jacobian) * &inverse;
+        // Records know nothing of each other's noise.
+        let within = noise.iter().zip(&rows).map(|(noise, rows)| {
+            let own = jacobian.rows(rows.start, rows.len()).into_owned();
+            noise.covariance_of(&own)
+        });
+        let within = within.fold(DMatrix::zeros(free, free), |all, one| all + one);
+        let sandwich = &inverse * within * &inverse;
         // As variances of residuals go: what the parameters took from them.
         let sandwich = sandwich * (count as f64 / (count - free) as f64);
         let root = |x: f64| {
@@ -328,14 +348,16 @@ impl Errors {
                 0.0
             }
         });
-        let spread = counted.iter().map(|x| x * x).sum::<f64>() / count as f64;
+        let effective = noise.iter().zip(&rows).map(|(noise, rows)| {
+            let squares: f64 = counted(rows).iter().map(|x| x * x).sum();
+            (squares / noise.long_run_variance()).min(rows.len() as f64)
+        });
         Ok(Errors {
             widening,
             correlation,
             inverse,
             variance,
-            effective_samples: (count as f64 * spread / noise.long_run_variance())
-                .min(count as f64),
+            effective_samples: effective.sum(),
             noise,
             rms: (squares / count as f64).sqrt(),
             fitted,

@@ -73,6 +73,26 @@ impl Autoregression {
         self.innovation / (1.0 - sum).powi(2)
     }
 
+    /// Noise becomes its innovations, e = A x; the first few, before which there is noise that is not known, are themselves.
+    pub(super) fn innovations(&self, noise: &mut [f64]) {
+        for i in (self.coefficients.len()..noise.len()).rev() {
+            let before = self.coefficients.iter().enumerate();
+            let sum: f64 = before.map(|(k, c)| c * noise[i - k - 1]).sum();
+            noise[i] -= sum;
+        }
+    }
+
+    /// A' times innovations, of which the first few are 0.
+    pub(super) fn transposed(&self, innovations: &mut [f64]) {
+        let n = innovations.len();
+        for i in 0..n {
+            let later = self.coefficients.iter().enumerate();
+            let later = later.filter(|(k, _)| i + k + 1 < n);
+            let sum: f64 = later.map(|(k, c)| c * innovations[i + k + 1]).sum();
+            innovations[i] -= sum;
+        }
+    }
+
     /// J' W J, with the covariance W of this noise at as many samples as J has rows.
     ///
     /// W = s^2 A^-1 A'^-1 with the triangle A that takes the noise to its innovations; but for the first few samples, before which

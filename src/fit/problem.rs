@@ -1,172 +1,35 @@
-//! What is fitted to what: the record of a measurement, the slider, and which of its parameters are free.
+//! What is fitted to what: the records of measurements, the slider, and which of its parameters are free.
 
+use super::free::{DRIFT, FreeParameter};
 use super::least_squares::{Minimum, Residuals, minimise};
+use super::loss::Loss;
+use super::record::Record;
 use super::response::{Response, steady_friction};
-use super::slider::{Motion, Sliders, Stretch};
+use super::slider::{Motion, Sliders};
 use crate::error::{Error, Result};
 use nalgebra::{DMatrix, DVector};
 use std::cell::{Cell, RefCell};
 
-/// The name of the slope of a straight line that is added to the friction, per metre that the load point moves.
-pub const DRIFT: &str = "drift";
-
-/// A measurement: friction coefficients at ascending times.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Record {
-    /// In s.
-    pub times: Vec<f64>,
-    /// How far the load point has moved since the beginning, in m.
-    pub displacement: Vec<f64>,
-    /// The friction coefficient.
-    pub friction: Vec<f64>,
-    /// How much the square of each residual counts.
-    pub weights: Vec<f64>,
-}
-
-impl Record {
-    /// Every so-manieth sample of it.
-    pub fn thinned(&self, most: usize) -> Self {
-        let stride = self.times.len().div_ceil(most.max(1)).max(1);
-        self.only(&(0..self.times.len()).step_by(stride).collect::<Vec<_>>())
-    }
-
-    /// As many samples of it at most as twice `most`: half of them evenly, and half where each stretch of the motion begins, ever more
-    /// sparsely, as friction changes fast after a step of velocity and slowly later.
-    pub fn thinned_along(&self, motion: &Motion, most: usize) -> Self {
-        let count = self.times.len();
-        let stride = count.div_ceil(most.max(1)).max(1);
-        let mut rows: Vec<usize> = (0..count).step_by(stride).collect();
-        let each = most / motion.stretches.len().max(1);
-        for Stretch { span, .. } in &motion.stretches {
-            let first = self.times.partition_point(|&t| t < span.0);
-            let last = self.times.partition_point(|&t| t <= span.1);
-            let length = last.saturating_sub(first) as f64;
-            let part = |k: usize| length.powf(k as f64 / each as f64) - 1.0;
-            rows.extend((0..each).map(|k| first + part(k).max(0.0) as usize));
-        }
-        rows.retain(|&row| row < count);
-        rows.sort_unstable();
-        rows.dedup();
-        self.only(&rows)
-    }
-
-    fn only(&self, rows: &[usize]) -> Self {
-        let of = |all: &[f64]| rows.iter().map(|&row| all[row]).collect();
-        Record {
-            times: of(&self.times),
-            displacement: of(&self.displacement),
-            friction: of(&self.friction),
-            weights: of(&self.weights),
-        }
-    }
-}
-
-/// What a parameter is varied by.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Scale {
-    /// Its logarithm: it stays positive, and errors are relative.
-    Logarithmic,
-    /// Itself.
-    Linear,
-}
-
-impl Scale {
-    /// The variable at a value of the parameter.
-    pub fn inward(self, value: f64) -> f64 {
-        match self {
-            Scale::Logarithmic => value.ln(),
-            Scale::Linear => value,
-        }
-    }
-
-    /// The value of the parameter.
-    pub fn outward(self, variable: f64) -> f64 {
-        match self {
-            Scale::Logarithmic => variable.exp(),
-            Scale::Linear => variable,
-        }
-    }
-
-    /// d value / d variable
-    pub fn slope(self, value: f64) -> f64 {
-        match self {
-            Scale::Logarithmic => value,
-            Scale::Linear => 1.0,
-        }
-    }
-}
-
-/// A parameter that is looked for.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FreeParameter {
-    /// Its name: one of [`Sliders::names`], or [`DRIFT`].
-    pub name: String,
-    /// What it is varied by.
-    pub scale: Scale,
-    /// Between which values.
-    pub bounds: (f64, f64),
-}
-
-/// How residuals count that are large beside `scale`: each rho(r^2/scale^2), rho(u) = u for small u.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Loss {
-    /// u
-    Linear,
-    /// 2 (sqrt(1 + u) - 1)
-    SoftL1 {
-        /// In friction.
-        scale: f64,
-    },
-    /// u up to 1, then 2 sqrt(u) - 1
-    Huber {
-        /// In friction.
-        scale: f64,
-    },
-    /// ln(1 + u)
-    Cauchy {
-        /// In friction.
-        scale: f64,
-    },
-}
-
-impl Loss {
-    /// The z with z^2 = scale^2 rho and the sign of r, and dz/dr.
-    fn apply(self, r: f64) -> (f64, f64) {
-        let scale = match self {
-            Loss::Linear => return (r, 1.0),
-            Loss::Huber { scale } if r.abs() <= scale => return (r, 1.0),
-            Loss::SoftL1 { scale } | Loss::Huber { scale } | Loss::Cauchy { scale } => scale,
-        };
-        let u = (r / scale).powi(2);
-        if u == 0.0 {
-            return (r, 1.0);
-        }
-        let (rho, slope) = match self {
-            Loss::Linear => (u, 1.0),
-            Loss::SoftL1 { .. } => {
-                let root = (1.0 + u).sqrt();
-                (2.0 * u / (root + 1.0), 1.0 / root)
-            }
-            Loss::Huber { .. } => (2.0 * u.sqrt() - 1.0, 1.0 / u.sqrt()),
-            Loss::Cauchy { .. } => (u.ln_1p(), 1.0 / (1.0 + u)),
-        };
-        let z = (scale * rho.sqrt()).copysign(r);
-        (z, slope * r / z)
-    }
-}
-
-/// A fit that is asked for.
-pub struct Problem<'a, const N: usize> {
-    /// What slides.
-    pub sliders: &'a dyn Sliders<N>,
-    /// How its load point moves.
-    pub motion: &'a Motion,
+/// A record that is fitted, with what is fixed for it.
+#[derive(Clone)]
+pub struct FittedRecord<'a> {
     /// What was measured.
     pub record: &'a Record,
+    /// How the load point moved.
+    pub motion: &'a Motion,
     /// The parameters of the sliders: those that are fixed.
     pub parameters: Vec<f64>,
     /// The slope where it is fixed.
     pub drift: f64,
+}
+
+/// A fit that is asked for: of one record, or of several with parameters in common.
+#[derive(Clone)]
+pub struct Problem<'a, const N: usize> {
+    /// What slides.
+    pub sliders: &'a dyn Sliders<N>,
+    /// What was measured, at least one record.
+    pub records: Vec<FittedRecord<'a>>,
     /// What is looked for.
     pub free: Vec<FreeParameter>,
     /// How residuals count.
@@ -174,34 +37,82 @@ pub struct Problem<'a, const N: usize> {
 }
 
 impl<const N: usize> Problem<'_, N> {
-    /// The places of free parameters among those of the sliders, and their columns.
-    pub(super) fn places(&self) -> (Vec<usize>, Vec<usize>) {
-        let names = self.sliders.names();
-        let place = |free: &FreeParameter| names.iter().position(|name| *name == free.name);
-        let columns = self.free.iter().enumerate();
-        let found = columns.filter_map(|(column, free)| Some((place(free)?, column)));
-        found.unzip()
+    /// The same of these records in place of its own, one for each.
+    pub(super) fn with<'b>(&'b self, records: &'b [Record]) -> Problem<'b, N> {
+        let each = self.records.iter().zip(records);
+        let of = |(own, record): (&'b FittedRecord<'_>, &'b Record)| FittedRecord {
+            record,
+            ..own.clone()
+        };
+        Problem {
+            records: each.map(of).collect(),
+            ..self.clone()
+        }
     }
 
-    /// All parameters of the sliders, and the slope, at these variables.
-    pub fn parameters_at(&self, variables: &[f64]) -> (Vec<f64>, f64) {
-        let (places, columns) = self.places();
+    /// How many samples there are in all records.
+    pub fn samples(&self) -> usize {
+        let each = self.records.iter();
+        each.map(|one| one.record.times.len()).sum()
+    }
+
+    /// The rows of each record among all.
+    pub(super) fn rows(&self) -> Vec<std::ops::Range<usize>> {
+        let mut begun = 0;
+        let each = self.records.iter().map(|one| {
+            let first = begun;
+            begun += one.record.times.len();
+            first..begun
+        });
+        each.collect()
+    }
+
+    /// The friction that was measured, of all records one after the other.
+    pub(super) fn measured(&self) -> impl Iterator<Item = f64> + '_ {
+        let each = self.records.iter();
+        each.flat_map(|one| one.record.friction.iter().copied())
+    }
+
+    /// The places of a record's free parameters among those of the sliders, and their columns.
+    pub(super) fn places(&self, record: usize) -> (Vec<usize>, Vec<usize>) {
+        let names = self.sliders.names();
+        let place = |free: &FreeParameter| names.iter().position(|name| *name == free.name);
+        let found = self.columns(record);
+        found
+            .filter_map(|(column, free)| Some((place(free)?, column)))
+            .unzip()
+    }
+
+    /// The free parameters that a record has.
+    fn columns(&self, record: usize) -> impl Iterator<Item = (usize, &FreeParameter)> {
+        let all = self.free.iter().enumerate();
+        all.filter(move |(_, free)| free.of_record.is_none_or(|own| own == record))
+    }
+
+    pub(super) fn drift_column(&self, record: usize) -> Option<usize> {
+        let mut all = self.columns(record);
+        all.find_map(|(column, free)| (free.name == DRIFT).then_some(column))
+    }
+
+    /// All parameters of the sliders, and the slope, of a record at these variables.
+    pub fn parameters_at(&self, record: usize, variables: &[f64]) -> (Vec<f64>, f64) {
+        let (places, columns) = self.places(record);
         let value = |column: usize| self.free[column].scale.outward(variables[column]);
-        let mut all = self.parameters.clone();
+        let own = &self.records[record];
+        let mut all = own.parameters.clone();
         for (place, column) in places.into_iter().zip(columns) {
             all[place] = value(column);
         }
-        let drift = self.free.iter().position(|free| free.name == DRIFT);
-        (all, drift.map_or(self.drift, value))
+        (all, self.drift_column(record).map_or(own.drift, value))
     }
 
-    /// The friction coefficient of steady sliding at v V*, and its derivatives in the variables.
+    /// The friction coefficient of steady sliding at v V* with the parameters of a record, and its derivatives in the variables.
     ///
     /// # Errors
     /// Those of [`steady_friction`].
-    pub fn steady(&self, variables: &[f64], v: f64) -> Result<(f64, Vec<f64>)> {
-        let (places, columns) = self.places();
-        let (parameters, _) = self.parameters_at(variables);
+    pub fn steady(&self, record: usize, variables: &[f64], v: f64) -> Result<(f64, Vec<f64>)> {
+        let (places, columns) = self.places(record);
+        let (parameters, _) = self.parameters_at(record, variables);
         let (friction, slopes) = steady_friction(self.sliders, (&parameters, &places), v)?;
         let mut all = vec![0.0; self.free.len()];
         for ((slope, place), column) in slopes.iter().zip(&places).zip(columns) {
@@ -210,20 +121,20 @@ impl<const N: usize> Problem<'_, N> {
         Ok((friction, all))
     }
 
-    /// The friction at these variables.
+    /// The friction at these variables, of all records one after the other.
     ///
     /// # Errors
     /// Those of [`Response::of`].
     pub fn friction(&self, variables: &[f64]) -> Result<Vec<f64>> {
-        let (parameters, drift) = self.parameters_at(variables);
-        let Record {
-            times,
-            displacement,
-            ..
-        } = self.record;
-        let response = Response::of(self.sliders, self.motion, times, (&parameters, &[]))?;
-        let with_drift = response.friction.iter().zip(displacement);
-        Ok(with_drift.map(|(mu, x)| mu + drift * x).collect())
+        let mut all = Vec::with_capacity(self.samples());
+        for (i, one) in self.records.iter().enumerate() {
+            let (parameters, drift) = self.parameters_at(i, variables);
+            let times = &one.record.times;
+            let response = Response::of(self.sliders, one.motion, times, (&parameters, &[]))?;
+            let with_drift = response.friction.iter().zip(&one.record.displacement);
+            all.extend(with_drift.map(|(mu, x)| mu + drift * x));
+        }
+        Ok(all)
     }
 
     /// The sum of squares of the residuals at these variables, as they count; infinite where there is no friction.
@@ -231,55 +142,65 @@ impl<const N: usize> Problem<'_, N> {
         let Ok(friction) = self.friction(variables) else {
             return f64::INFINITY;
         };
-        let pairs = self.record.friction.iter().zip(&friction);
-        let squares = pairs
-            .zip(&self.record.weights)
-            .map(|((measured, made), weight)| weight * self.loss.apply(measured - made).0.powi(2));
+        let residuals = self.measured().zip(&friction).map(|(own, made)| own - made);
+        let squares = residuals
+            .zip(self.weights())
+            .map(|(residual, weight)| weight * self.loss.apply(residual).0.powi(2));
         squares.sum()
     }
 
-    /// The friction at these variables, and its derivatives in them.
+    /// How much the square of each residual counts.
+    fn weights(&self) -> impl Iterator<Item = f64> + '_ {
+        let each = self.records.iter();
+        each.flat_map(|one| one.record.weights.iter().copied())
+    }
+
+    /// The friction at these variables, of all records one after the other, and its derivatives in them.
     ///
     /// # Errors
     /// Those of [`Response::of`].
     pub fn response(&self, variables: &[f64]) -> Result<(Vec<f64>, DMatrix<f64>)> {
-        let (places, columns) = self.places();
-        let (parameters, drift) = self.parameters_at(variables);
-        let Record {
-            times,
-            displacement,
-            ..
-        } = self.record;
-        let response = Response::of(self.sliders, self.motion, times, (&parameters, &places))?;
-        let mut slopes = DMatrix::zeros(times.len(), self.free.len());
-        for (j, &column) in columns.iter().enumerate() {
-            let by = self.free[column].scale.slope(parameters[places[j]]);
-            slopes.set_column(column, &(response.derivatives.column(j) * by));
+        let mut slopes = DMatrix::zeros(self.samples(), self.free.len());
+        let mut friction = Vec::with_capacity(self.samples());
+        for (i, rows) in self.rows().into_iter().enumerate() {
+            let one = &self.records[i];
+            let (places, columns) = self.places(i);
+            let (parameters, drift) = self.parameters_at(i, variables);
+            let times = &one.record.times;
+            let response = Response::of(self.sliders, one.motion, times, (&parameters, &places))?;
+            let moved = &one.record.displacement;
+            friction.extend(
+                response
+                    .friction
+                    .iter()
+                    .zip(moved)
+                    .map(|(mu, x)| mu + drift * x),
+            );
+            let mut own = slopes.rows_mut(rows.start, rows.len());
+            for (j, &column) in columns.iter().enumerate() {
+                let by = self.free[column].scale.slope(parameters[places[j]]);
+                own.set_column(column, &(response.derivatives.column(j) * by));
+            }
+            if let Some(column) = self.drift_column(i) {
+                own.column_mut(column).copy_from_slice(moved);
+            }
         }
-        if let Some(column) = self.free.iter().position(|free| free.name == DRIFT) {
-            slopes.column_mut(column).copy_from_slice(displacement);
-        }
-        let with_drift = response.friction.iter().zip(displacement);
-        let friction: Vec<f64> = with_drift.map(|(mu, x)| mu + drift * x).collect();
         if friction.iter().chain(&slopes).all(|x| x.is_finite()) {
             Ok((friction, slopes))
         } else {
             let what = "the friction of the slider";
-            Err(Error::NonFinite { what, t: times[0] })
+            let t = self.records[0].record.times[0];
+            Err(Error::NonFinite { what, t })
         }
     }
 
     /// The residuals, measured less computed, as they count.
-    fn residuals(&self, friction: &[f64], mut slopes: DMatrix<f64>) -> Residuals {
-        let Record {
-            friction: measured,
-            weights,
-            ..
-        } = self.record;
-        let mut values = DVector::zeros(measured.len());
-        for i in 0..measured.len() {
-            let weight = weights[i].sqrt();
-            let (z, slope) = self.loss.apply(measured[i] - friction[i]);
+    pub(super) fn residuals(&self, friction: &[f64], mut slopes: DMatrix<f64>) -> Residuals {
+        let mut values = DVector::zeros(friction.len());
+        let all = self.measured().zip(self.weights()).zip(friction);
+        for (i, ((measured, weight), made)) in all.enumerate() {
+            let weight = weight.sqrt();
+            let (z, slope) = self.loss.apply(measured - made);
             values[i] = weight * z;
             let mut row = slopes.row_mut(i);
             row *= -weight * slope;
@@ -335,7 +256,7 @@ impl<const N: usize> Problem<'_, N> {
             let known = failure.into_inner();
             known.unwrap_or(Error::NonFinite {
                 what: "the friction of the slider",
-                t: self.record.times[0],
+                t: self.records[0].record.times[0],
             })
         })
     }

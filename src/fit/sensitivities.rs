@@ -25,6 +25,16 @@ pub fn by_sensitivities<const N: usize>(
     problem: &Problem<'_, N>,
     variables: &[f64],
 ) -> Result<f64> {
+    let mut each = (0..problem.records.len()).map(|record| of_record(problem, record, variables));
+    each.try_fold(0.0, |most: f64, one| Ok(most.max(one?)))
+}
+
+#[cfg(feature = "sundials")]
+fn of_record<const N: usize>(
+    problem: &Problem<'_, N>,
+    at: usize,
+    variables: &[f64],
+) -> Result<f64> {
     use super::response::{Response, Slopes, steady_slopes};
     use crate::integrate::{CvodeIntegrator, MAX_STEPS, Tolerances};
     use crate::sundials::MultistepMethod;
@@ -33,10 +43,10 @@ pub fn by_sensitivities<const N: usize>(
     const TIMES: usize = 50;
     const TOLERANCE: f64 = 1e-11;
 
-    let (places, _) = problem.places();
-    let (parameters, _) = problem.parameters_at(variables);
-    let record = problem.record.thinned(TIMES);
-    let (sliders, motion) = (problem.sliders, problem.motion);
+    let (places, _) = problem.places(at);
+    let (parameters, _) = problem.parameters_at(at, variables);
+    let record = problem.records[at].record.thinned(TIMES);
+    let (sliders, motion) = (problem.sliders, problem.records[at].motion);
     let series = Response::of(sliders, motion, &record.times, (&parameters, &places))?;
     let tolerances = Tolerances::equal(TOLERANCE)?;
     let mut cvode = CvodeIntegrator::<N>::new(MultistepMethod::Bdf, tolerances, MAX_STEPS)?;

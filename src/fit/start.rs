@@ -4,7 +4,8 @@
 //! to (a - b) ln(V_2/V_1) above what it was. In a hold it falls by nearly a ln(1 + k V t/a), as creep lets the spring out; when the load point
 //! moves again, it rises along the spring to a peak nearly b ln(1 + V t/L) above what it was, and decays over some L.
 
-use super::problem::Record;
+use super::holds::HELD;
+use super::record::Record;
 use super::slider::{Motion, Stretch};
 
 /// What a step or a hold shows.
@@ -26,9 +27,6 @@ pub struct Guess {
 const SAMPLES: usize = 8;
 /// Samples on either side that a moving median takes.
 const AROUND: usize = 2;
-
-/// A load point that is slower than this part of its velocity before is held.
-const HELD: f64 = 1e-2;
 
 /// What the largest step and the longest hold of the motion show, those of them that there are with samples on both sides.
 pub fn guesses(record: &Record, motion: &Motion, reference_rate: f64) -> Vec<Guess> {

@@ -1,8 +1,9 @@
 //! Whether a fit determines its parameters, and if not, in words, which.
 
 use super::FittedParameter;
+use super::free::Scale;
 use super::least_squares::Minimum;
-use super::problem::{Problem, Scale};
+use super::problem::Problem;
 use nalgebra::DMatrix;
 
 /// A parameter whose standard error is a factor of more than this, e, is not determined.
@@ -65,7 +66,10 @@ pub fn undecided<const N: usize>(
         } else {
             f64::NEG_INFINITY
         };
-        let gone = problem.record.displacement.iter();
+        let gone = problem
+            .records
+            .iter()
+            .flat_map(|one| &one.record.displacement);
         let gone = gone.fold(0.0, |most: f64, x| most.max(x.abs()));
         let is_length = one.name.starts_with("slip_length");
         let why = if !one.uncertainty.is_finite() {

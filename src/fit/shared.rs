@@ -1,0 +1,119 @@
+//! Whether records agree on what they share.
+
+use super::{Fit, FittedParameter, Scale};
+use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
+
+/// Records that agree differ so much, or more, in this part of cases.
+const DISAGREE: f64 = 0.01;
+
+/// What several records say of a parameter that they share.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Agreement {
+    /// Its name.
+    pub name: String,
+    /// The variable and its standard error by each record alone; none by one that does not determine it.
+    pub alone: Vec<Option<(f64, f64)>>,
+    /// Cochran's Q: the squares of what they differ by from their mean, in standard errors.
+    pub q: f64,
+    /// Records that determine it, less one.
+    pub degrees_of_freedom: usize,
+    /// How often records that agree have such a Q, or a larger one.
+    pub probability: f64,
+    /// By what the standard error is multiplied as the records differ more than their noise explains: the square root of Q over its degrees
+    /// of freedom (Birge 1932), 1 where they agree.
+    pub widening: f64,
+    /// Records that differ from the mean of all others by more than chance explains.
+    pub outlying: Vec<usize>,
+}
+
+impl Agreement {
+    /// Of a parameter, by fits of each record alone.
+    pub fn of(name: &str, fits: &[Option<&Fit>]) -> Self {
+        let alone = fits.iter().map(|fit| {
+            let fit = (*fit)?;
+            let one = fit.parameters.iter().find(|one| one.name == name)?;
+            let is_lost = fit.verdict.undetermined.contains(&one.name);
+            let (variable, error) = variable(one);
+            (!is_lost && error.is_finite() && error > 0.0).then_some((variable, error))
+        });
+        let alone: Vec<Option<(f64, f64)>> = alone.collect();
+        let known = |except: Option<usize>| {
+            let all = alone.iter().enumerate();
+            all.filter(move |(i, _)| Some(*i) != except)
+                .filter_map(|(_, one)| *one)
+        };
+        let count = known(None).count();
+        let (middle, _) = mean(known(None));
+        let q: f64 = known(None)
+            .map(|(x, error)| ((x - middle) / error).powi(2))
+            .sum();
+        let degrees_of_freedom = count.saturating_sub(1);
+        let probability = match degrees_of_freedom {
+            0 => 1.0,
+            freedom => ChiSquared::new(freedom as f64).map_or(1.0, |chi| chi.sf(q)),
+        };
+        let widening = match probability < DISAGREE {
+            true => (q / degrees_of_freedom as f64).sqrt().max(1.0),
+            false => 1.0,
+        };
+        // Of two records that differ none is the one that is wrong.
+        let limit = Normal::standard().inverse_cdf(1.0 - 0.5 * DISAGREE / count.max(1) as f64);
+        let differs = |i: usize| {
+            let (x, error) = alone[i]?;
+            let (others, of_others) = mean(known(Some(i)));
+            Some((x - others).abs() > limit * error.hypot(of_others))
+        };
+        let all = 0..alone.len();
+        let outlying = all.filter(|&i| count > 2 && widening > 1.0 && differs(i) == Some(true));
+        Agreement {
+            name: name.to_owned(),
+            outlying: outlying.collect(),
+            q,
+            degrees_of_freedom,
+            probability,
+            widening,
+            alone,
+        }
+    }
+}
+
+/// The mean by weights of inverse variances, and its standard error.
+fn mean(each: impl Iterator<Item = (f64, f64)>) -> (f64, f64) {
+    let (mut sum, mut weights) = (0.0, 0.0);
+    for (x, error) in each {
+        let weight = error.powi(-2);
+        sum += weight * x;
+        weights += weight;
+    }
+    (sum / weights, 1.0 / f64::sqrt(weights))
+}
+
+fn variable(one: &FittedParameter) -> (f64, f64) {
+    let slope = one.scale.slope(one.value);
+    (one.scale.inward(one.value), one.uncertainty / slope)
+}
+
+impl Fit {
+    /// Errors as many times larger as records differ more in a parameter that they share than their noise explains.
+    pub fn widen(&mut self, agreement: &Agreement) {
+        let by = agreement.widening;
+        let all = self.parameters.iter_mut().enumerate();
+        for (i, one) in all.filter(|(_, one)| one.name == agreement.name) {
+            let best = one.scale.inward(one.value);
+            let end =
+                |end: f64, scale: Scale| scale.outward(best + by * (scale.inward(end) - best));
+            one.uncertainty *= by;
+            one.widening *= by;
+            one.interval = (
+                end(one.interval.0, one.scale),
+                end(one.interval.1, one.scale),
+            );
+            if let Some(profile) = self.profiles.get_mut(i) {
+                let points = profile.points.iter_mut();
+                points.for_each(|point| point.deviation /= by);
+                let (low, high) = profile.interval;
+                profile.interval = (best + by * (low - best), best + by * (high - best));
+            }
+        }
+    }
+}
