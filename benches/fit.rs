@@ -3,7 +3,8 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
 use twinslip::fit::{
-    FreeParameter, Intervals, Loss, Motion, Problem, Record, Scale, Stretch, fit, guesses,
+    FittedRecord, FreeParameter, Intervals, Loss, Motion, Prior, Problem, Record, Sampling, Scale,
+    Stretch, fit, guesses, posterior,
 };
 use twinslip::model::Slider;
 
@@ -56,14 +57,17 @@ fn fits(criterion: &mut Criterion) {
                 Scale::Logarithmic
             },
             bounds: if linear { (-1e9, 1e9) } else { (1e-12, 1e12) },
+            of_record: None,
         }
     });
     let problem = |record| Problem::<3> {
         sliders: &slider,
-        motion: &motion,
-        record,
-        parameters: TRUTH.to_vec(),
-        drift: 0.0,
+        records: vec![FittedRecord {
+            record,
+            motion: &motion,
+            parameters: TRUTH.to_vec(),
+            drift: 0.0,
+        }],
         free: free.to_vec(),
         loss: Loss::Linear,
     };
@@ -100,6 +104,27 @@ fn fits(criterion: &mut Criterion) {
     let minimum = problem.variables(&TRUTH[..FREE.len()]);
     group.bench_function("friction with derivatives", |bencher| {
         bencher.iter(|| problem.response(black_box(&minimum)));
+    });
+    let found = fit(&problem, std::slice::from_ref(&start), Intervals::Linear).expect("a fit");
+    let log = |low, high| Prior::LogUniform { low, high };
+    let sampling = Sampling {
+        draws: 4000,
+        seed: 1,
+        priors: vec![
+            log(1.0, 1e7),
+            log(1e-6, 1.0),
+            log(1e-6, 1.0),
+            log(1e-8, 1e-2),
+            Prior::Uniform {
+                low: 0.0,
+                high: 3.0,
+            },
+        ],
+    };
+    let begin = [found.variables.clone()];
+    group.sample_size(10);
+    group.bench_function("4,000 draws of the posterior", |bencher| {
+        bencher.iter(|| posterior(&problem, &found, &begin, black_box(&sampling), &|| true));
     });
     group.finish();
 }

@@ -97,9 +97,12 @@ fn a_file_that_is_no_fit_is_refused() {
     refused("no parameter of an interface", &|fit| {
         fit["parameters"][1]["name"] = json!("colour");
     });
-    refused("the fit has direct_effect twice", &|fit| {
-        fit["parameters"][1]["name"] = json!("direct_effect");
-    });
+    refused(
+        "the fit has direct_effect for each of several records",
+        &|fit| {
+            fit["parameters"][1]["name"] = json!("direct_effect");
+        },
+    );
     refused("6 rows of 6 numbers", &|fit| {
         fit["correlation"].as_array_mut().expect("rows").pop();
     });

@@ -1,6 +1,6 @@
 //! Fits of records whose parameters are known: derivatives, minima, errors.
 
-use super::common::synthetic::{Chance, FAST, Making, SLOW, Synthetic};
+use super::common::synthetic::{Chance, FAST, Making, SLOW, Shows, Synthetic};
 use rayon::prelude::*;
 use twinslip::fit::{
     Autoregression, DRIFT, Fit, Intervals, Loss, Motion, Problem, Record, Response, Sliders,
@@ -24,6 +24,7 @@ fn making(law: &'static str) -> Making {
         noise: 0.02,
         memory: 0.0,
         has_drift: false,
+        shows: Shows::Step,
     }
 }
 
@@ -375,10 +376,8 @@ fn what_the_data_do_not_determine_is_told() {
         weights: vec![1.0; 90],
     };
     let free = ["slip_length", "evolution_effect", "reference_friction"];
-    let problem = Problem {
-        record: &quiet,
-        ..synthetic.problem(&free)
-    };
+    let mut problem = synthetic.problem(&free);
+    problem.records[0].record = &quiet;
     let truth: Vec<f64> = free.iter().map(|name| synthetic.value(name)).collect();
     let found = fit(&problem, &[truth], Intervals::Profile).expect("a fit");
     assert_eq!(found.verdict.name(), "undecided");

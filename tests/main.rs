@@ -60,6 +60,8 @@ mod explore_starts;
 mod figures_of_laws;
 mod fit;
 mod fit_command;
+mod fit_coverage;
+mod fit_laboratory;
 mod fit_printing;
 mod fit_recorded;
 mod fit_records;

@@ -302,12 +302,28 @@ impl Shown<'_> {
 }
 
 /// How healing grows per decade of the hold's duration: the slope of a straight line against its logarithm to base 10, by weights of inverse
-/// variances; its error counts how far the holds are from a line. None where there are no two durations.
+/// variances, or of equal weights where nothing has an error; its error counts how far the holds are from a line. None where there are no two
+/// durations.
 pub fn healing_rate(holds: impl IntoIterator<Item = (f64, Estimate)>) -> Option<Estimate> {
-    let points = holds.into_iter().filter(|(_, one)| one.uncertainty > 0.0);
-    let points: Vec<(f64, f64, f64)> = points
-        .map(|(duration, one)| (duration.log10(), one.value, one.uncertainty.powi(-2)))
-        .collect();
+    /// Durations that are the same but for rounding, in decades.
+    const SAME: f64 = 1e-6;
+    let all: Vec<(f64, Estimate)> = holds.into_iter().collect();
+    let is_exact = all.iter().all(|(_, one)| one.uncertainty == 0.0);
+    let weighted = |(duration, one): &(f64, Estimate)| {
+        let weight = if is_exact {
+            1.0
+        } else {
+            one.uncertainty.powi(-2)
+        };
+        (duration.log10(), one.value, weight)
+    };
+    let points: Vec<(f64, f64, f64)> = all.iter().map(weighted).collect();
+    let apart = points
+        .iter()
+        .any(|(own, _, _)| (own - points[0].0).abs() >= SAME);
+    if !apart || points.iter().any(|(_, _, w)| !w.is_finite() || *w == 0.0) {
+        return None;
+    }
     let sum = |of: &dyn Fn(&(f64, f64, f64)) -> f64| points.iter().map(of).sum::<f64>();
     let weight = sum(&|(_, _, w)| *w);
     let (x, y) = (
@@ -315,21 +331,10 @@ pub fn healing_rate(holds: impl IntoIterator<Item = (f64, Estimate)>) -> Option<
         sum(&|(_, y, w)| w * y) / weight,
     );
     let spread = sum(&|(own, _, w)| w * (own - x).powi(2));
-    /// Durations that are the same but for rounding, in decades.
-    const SAME: f64 = 1e-6;
-    let is_one = points
-        .iter()
-        .all(|(own, _, _)| (own - points[0].0).abs() < SAME);
-    if points.len() < 2 || is_one {
-        return None;
-    }
     let slope = sum(&|(own, value, w)| w * (own - x) * (value - y)) / spread;
     let off = sum(&|(own, value, w)| w * (value - y - slope * (own - x)).powi(2));
-    let freedom = points.len() - 2;
-    let scatter = match freedom {
-        0 => 1.0,
-        freedom => (off / freedom as f64).max(1.0),
-    };
+    let scatter = off / (points.len() - 2).max(1) as f64;
+    let scatter = if is_exact { scatter } else { scatter.max(1.0) };
     Some(Estimate {
         value: slope,
         uncertainty: (scatter / spread).sqrt(),

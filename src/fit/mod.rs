@@ -65,6 +65,8 @@ const FOLLOWED: usize = 2;
 pub struct FittedParameter {
     /// Its name.
     pub name: String,
+    /// Of which of several records it is, by its place among them; of all where none is named.
+    pub of_record: Option<usize>,
     /// What it was varied by.
     pub scale: Scale,
     /// In SI.
@@ -75,6 +77,20 @@ pub struct FittedParameter {
     pub interval: (f64, f64),
     /// The standard error over that of white noise of the same variance.
     pub widening: f64,
+}
+
+impl FittedParameter {
+    /// Its name, and of which record it is where each has its own.
+    pub fn label(&self) -> String {
+        label(&self.name, self.of_record)
+    }
+}
+
+fn label(name: &str, of_record: Option<usize>) -> String {
+    of_record.map_or_else(
+        || name.to_owned(),
+        |at| format!("{name} of record {}", at + 1),
+    )
 }
 
 /// A fit.
@@ -163,6 +179,7 @@ pub fn fit<const N: usize>(
         let is_lost = !error.is_finite();
         FittedParameter {
             name: free.name.clone(),
+            of_record: free.of_record,
             scale: free.scale,
             value,
             uncertainty: if is_lost {

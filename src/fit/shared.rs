@@ -32,7 +32,7 @@ impl Agreement {
         let alone = fits.iter().map(|fit| {
             let fit = (*fit)?;
             let one = fit.parameters.iter().find(|one| one.name == name)?;
-            let is_lost = fit.verdict.undetermined.contains(&one.name);
+            let is_lost = fit.verdict.undetermined.contains(&one.label());
             let (variable, error) = variable(one);
             (!is_lost && error.is_finite() && error > 0.0).then_some((variable, error))
         });

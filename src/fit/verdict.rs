@@ -26,7 +26,7 @@ impl Verdict {
     /// Whether a parameter is not determined to the point that its value says nothing: it has no error, or one that is larger than itself where
     /// it can only be positive. Its interval then says what is known.
     pub fn has_run_away(&self, parameter: &FittedParameter) -> bool {
-        let is_told = self.undetermined.contains(&parameter.name);
+        let is_told = self.undetermined.contains(&parameter.label());
         is_told && (!parameter.uncertainty.is_finite() || is_wide(parameter))
     }
 
@@ -94,10 +94,10 @@ pub fn undecided<const N: usize>(
         let with = partner.map_or(String::new(), |(j, rho)| {
             format!(
                 ", and these data determine it only together with {} (correlation {rho:.4})",
-                parameters[j].name
+                parameters[j].label()
             )
         });
-        sentences.push(format!("{} is not determined: {why}{with}", one.name));
+        sentences.push(format!("{} is not determined: {why}{with}", one.label()));
     }
     for i in 0..parameters.len() {
         for j in 0..i {
@@ -105,12 +105,12 @@ pub fn undecided<const N: usize>(
             if rho.abs() > INSEPARABLE && !told[i] && !told[j] {
                 sentences.push(format!(
                     "only one combination of {} and {} is determined (correlation {rho:.5}): fix one of them",
-                    parameters[j].name, parameters[i].name
+                    parameters[j].label(), parameters[i].label()
                 ));
             }
         }
     }
-    let names = parameters.iter().map(|one| one.name.clone());
+    let names = parameters.iter().map(FittedParameter::label);
     Verdict {
         is_minimum: minimum.converged,
         undecided: sentences,

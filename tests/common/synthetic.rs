@@ -2,7 +2,9 @@
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
-use twinslip::fit::{DRIFT, FreeParameter, Loss, Motion, Problem, Record, Scale, Stretch};
+use twinslip::fit::{
+    DRIFT, FittedRecord, FreeParameter, Loss, Motion, Problem, Record, Scale, Sliders, Stretch,
+};
 use twinslip::model::Slider;
 
 /// Random numbers that follow from a seed.
@@ -60,6 +62,33 @@ pub struct Making {
     /// How noise goes on from sample to sample.
     pub memory: f64,
     pub has_drift: bool,
+    pub shows: Shows,
+}
+
+/// How the load point of a record moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shows {
+    /// From [`SLOW`] to [`FAST`].
+    Step,
+    /// Three holds, each ten times as long as the one before, while sliding at [`FAST`].
+    Holds,
+    /// The step, and then the holds.
+    Both,
+}
+
+impl Shows {
+    /// The stretches: how long each lasts, in s, and its velocity in m/s; for a slip length in m.
+    fn stretches(self, length: f64) -> Vec<(f64, f64)> {
+        let step = [(4.0 * length / SLOW, SLOW), (20.0 * length / FAST, FAST)];
+        let slides = 25.0 * length / FAST;
+        let hold = |lasts: f64| [(lasts * length / FAST, 0.0), (slides, FAST)];
+        let holds = [1.0, 10.0, 100.0].map(hold).concat();
+        match self {
+            Shows::Step => step.to_vec(),
+            Shows::Holds => [vec![(slides, FAST)], holds].concat(),
+            Shows::Both => [step.to_vec(), holds].concat(),
+        }
+    }
 }
 
 impl Synthetic {
@@ -68,6 +97,11 @@ impl Synthetic {
         let a = chance.between_in_log(0.005, 0.02);
         let b = a * chance.between(0.6, 1.4);
         let length = chance.between_in_log(2e-6, 3e-5);
+        Self::of(making, (a, b, length), chance)
+    }
+
+    /// With these a, b and L, and another spring.
+    pub fn of(making: &Making, (a, b, length): (f64, f64, f64), chance: &mut Chance) -> Self {
         // k_c = (b - a)/L: well above it, and above zero.
         let stiffness = chance.between(1.0, 3.0) * a / length + 3.0 * (b - a).max(0.0) / length;
         let truth = [
@@ -81,22 +115,34 @@ impl Synthetic {
             0.3 * b,
             5.0 * length,
         ];
-        let (rest, slides) = (4.0 * length / SLOW, 20.0 * length / FAST);
-        let end = rest + slides;
-        let stretch = |span: (f64, f64), velocity| Stretch {
-            span,
-            velocity: (velocity, velocity),
-        };
+        let mut now = 0.0;
+        let stretches = making.shows.stretches(length).into_iter();
+        let stretches = stretches.map(|(lasts, velocity)| {
+            let begin = now;
+            now += lasts;
+            Stretch {
+                span: (begin, now),
+                velocity: (velocity, velocity),
+            }
+        });
+        let stretches: Vec<Stretch> = stretches.collect();
         let motion = Motion {
-            before: SLOW,
-            stretches: vec![stretch((0.0, rest), SLOW), stretch((rest, end), FAST)],
+            before: stretches[0].velocity.0,
+            stretches,
         };
-        // As many samples in each, as laboratories do: with the load point.
-        let half = making.samples / 4;
-        let before = (0..half).map(|i| rest * i as f64 / half as f64);
-        let after = making.samples - half;
-        let after = (0..after).map(|i| rest + slides * i as f64 / (after - 1) as f64);
-        let times: Vec<f64> = before.chain(after).collect();
+        // A quarter of the samples before a step, and as many in each stretch of holds: laboratories take them with the load point.
+        let count = motion.stretches.len();
+        let last = motion.stretches[count - 1].span.1;
+        let each = motion.stretches.iter().enumerate().flat_map(|(i, own)| {
+            let of = match making.shows {
+                Shows::Step if i == 0 => making.samples / 4,
+                Shows::Step => making.samples - making.samples / 4 - 1,
+                Shows::Holds | Shows::Both => making.samples / count,
+            };
+            let (begin, end) = own.span;
+            (0..of).map(move |k| begin + (end - begin) * k as f64 / of as f64)
+        });
+        let times: Vec<f64> = each.chain([last]).collect();
         let displacement = motion.displacement(&times);
         let drift = if making.has_drift {
             chance.between(-0.2, 0.2) * a / (10.0 * length)
@@ -117,8 +163,8 @@ impl Synthetic {
             truth,
             drift,
         };
-        let problem = synthetic.problem(&["reference_friction"]);
-        let problem = Problem { drift, ..problem };
+        let mut problem = synthetic.problem(&["reference_friction"]);
+        problem.records[0].drift = drift;
         let (clean, _) = problem.response(&[truth[4]]).expect("a friction");
         let size = making.noise * a * (FAST / SLOW).ln();
         let fresh = (1.0 - making.memory * making.memory).sqrt();
@@ -134,30 +180,30 @@ impl Synthetic {
 
     /// The fit of these parameters, the others being known.
     pub fn problem(&self, free: &[&str]) -> Problem<'_, 3> {
-        let of = |name: &&str| {
-            let is_linear = ["reference_friction", DRIFT].contains(name);
-            FreeParameter {
-                name: (*name).into(),
-                scale: if is_linear {
-                    Scale::Linear
-                } else {
-                    Scale::Logarithmic
-                },
-                bounds: if is_linear {
-                    (-1e30, 1e30)
-                } else {
-                    (1e-30, 1e30)
-                },
-            }
-        };
+        self.problem_of(&self.slider, free)
+    }
+
+    /// The same with another number of variables.
+    pub fn problem_of<'a, const N: usize>(
+        &'a self,
+        sliders: &'a dyn Sliders<N>,
+        free: &[&str],
+    ) -> Problem<'a, N> {
         Problem {
-            sliders: &self.slider,
-            motion: &self.motion,
+            sliders,
+            records: vec![self.fitted()],
+            free: free.iter().map(|name| free_parameter(name, None)).collect(),
+            loss: Loss::Linear,
+        }
+    }
+
+    /// The record, with what is known for it.
+    pub fn fitted(&self) -> FittedRecord<'_> {
+        FittedRecord {
             record: &self.record,
+            motion: &self.motion,
             parameters: self.truth.to_vec(),
             drift: 0.0,
-            free: free.iter().map(of).collect(),
-            loss: Loss::Linear,
         }
     }
 
@@ -165,5 +211,24 @@ impl Synthetic {
     pub fn value(&self, name: &str) -> f64 {
         let place = Slider::NAMES.iter().position(|own| *own == name);
         place.map_or(self.drift, |place| self.truth[place])
+    }
+}
+
+/// A free parameter without bounds.
+pub fn free_parameter(name: &str, of_record: Option<usize>) -> FreeParameter {
+    let is_linear = ["reference_friction", "evolution_effect_2", DRIFT].contains(&name);
+    FreeParameter {
+        name: name.into(),
+        scale: if is_linear {
+            Scale::Linear
+        } else {
+            Scale::Logarithmic
+        },
+        bounds: if is_linear {
+            (-1e30, 1e30)
+        } else {
+            (1e-30, 1e30)
+        },
+        of_record,
     }
 }

@@ -2,6 +2,7 @@
 
 use super::call::Call;
 use super::fault;
+use super::holds;
 use super::report::{self, Report, unit_names};
 use super::stream::StreamOut;
 use super::words::{count, several, time};
@@ -345,6 +346,10 @@ struct IntegrationResult<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     program: Option<Vec<Value>>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    holds: Option<Value>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    healing_rate: Option<Value>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     summary: Option<Value>,
     #[serde(skip_serializing_if = "Option::is_none")]
     events: Option<Vec<Map<String, Value>>>,
@@ -368,10 +373,13 @@ fn result<'a>(
     });
     let objects =
         |table: &Option<Box<dyn Listing + '_>>| table.as_ref().map(|table| table.objects());
+    let has_holds = !outcome.holds.is_empty();
     IntegrationResult {
         rows,
         last,
         program: plan.program().map(changes),
+        holds: has_holds.then(|| holds::of_run(&outcome.holds)),
+        healing_rate: has_holds.then(|| holds::rate_of_run(&outcome.holds)),
         summary: plan.fault(outcome).map(|fault| fault::object(&fault)),
         events: objects(&beside.events),
         participation: objects(&beside.participation),

@@ -14,6 +14,7 @@ mod failure;
 mod fault;
 mod fit;
 mod general;
+mod holds;
 mod integrate;
 mod interrupt;
 mod law;

@@ -8,8 +8,8 @@ mod prior;
 
 pub use prior::Prior;
 
-use super::Fit;
 use super::problem::Problem;
+use super::{Fit, label};
 use crate::error::{Error, Result};
 use density::{About, Density};
 use nalgebra::{DMatrix, DVector};
@@ -47,8 +47,8 @@ pub struct Sampling {
 /// What is known of one parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Marginal {
-    /// Its name.
-    pub name: String,
+    /// Its name, and of which record it is where each has its own.
+    pub label: String,
     /// The mean of the draws.
     pub mean: f64,
     /// Their standard deviation.
@@ -284,7 +284,7 @@ fn gather<const N: usize>(
         let squares: f64 = column.iter().map(|x| (x - mean).powi(2)).sum();
         let mut sorted = column;
         Marginal {
-            name: free.name.clone(),
+            label: label(&free.name, free.of_record),
             mean,
             deviation: (squares / (count - 1.0)).sqrt(),
             quantiles: QUANTILES.map(|part| diagnostics::quantile(&mut sorted, part)),
@@ -310,7 +310,7 @@ fn doubts(marginals: &[Marginal], divergences: usize, chains: usize) -> Vec<Stri
     let mut doubts = Vec::new();
     let named = |is_bad: &dyn Fn(&Marginal) -> bool| {
         let bad = marginals.iter().filter(|one| is_bad(one));
-        bad.map(|one| one.name.as_str()).collect::<Vec<_>>()
+        bad.map(|one| one.label.as_str()).collect::<Vec<_>>()
     };
     let apart = named(&|one| !(one.r_hat <= AGREE));
     if !apart.is_empty() {

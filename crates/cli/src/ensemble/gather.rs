@@ -95,8 +95,7 @@ impl<'a> Members<'a> {
     /// The fitted parameters in a draw.
     pub fn drawn(&self, draw: usize) -> Vec<f64> {
         let fit = &self.plan.fit;
-        let independent = normal(draw, fit.parameters.len());
-        fit.above(&(&fit.factor * independent))
+        fit.draw(draw, |count| normal(draw, count))
     }
 
     /// All members, as the things of the estimate that they have.

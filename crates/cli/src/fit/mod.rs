@@ -2,30 +2,61 @@
 
 mod object;
 mod page;
+mod posterior;
+mod records;
 mod steps;
 
 use super::Ending;
 use super::call::Call;
+use super::holds;
 use super::report::Report;
 use serde_json::{Map, Value, json};
 use std::path::Path;
-use twinslip::error::Result;
-use twinslip::fit::{Comparison, Fit, Problem, akaike, cross_validation};
+use std::sync::atomic::Ordering;
+use twinslip::error::{Error, Result};
+use twinslip::fit::{
+    Comparison, Fit, Hold, Posterior, Problem, Sampling, akaike, cross_validation,
+};
 use twinslip_output::{Format, plot};
-use twinslip_tasks::scene::{Described, FitOptions, FitPlan, LawToFit, Units, WithProblem};
+use twinslip_tasks::scene::{
+    Described, FitOptions, FitPlan, FittedRecords, LawToFit, Recording, Units, WithProblem,
+};
 use twinslip_tasks::views::{self, FitRow};
 
 /// A law that was fitted, with what it is compared by where there are several.
 pub struct Fitted<'a> {
     pub law: &'a LawToFit,
-    pub fit: Fit,
+    pub together: FittedRecords,
+    pub holds: Vec<Hold>,
+    pub drawn: Option<Drawn>,
     pub comparison: Option<Comparison>,
     /// By how much derivatives by sensitivities of CVODES differ, relative to the largest of each parameter.
     pub crosscheck: Option<f64>,
 }
 
+impl Fitted<'_> {
+    /// The fit of all records.
+    pub fn fit(&self) -> &Fit {
+        &self.together.fit
+    }
+}
+
+/// Draws from a posterior.
+pub struct Drawn {
+    pub posterior: Posterior,
+    pub sampling: Sampling,
+    /// The minima that chains began at.
+    pub minima: usize,
+}
+
 pub fn run(options: &FitOptions, call: &Call) -> Result<Ending> {
-    let pictures = [&options.plot, &options.plot_parameters, &options.plot_law];
+    let pictures = [
+        &options.plot,
+        &options.plot_parameters,
+        &options.plot_law,
+        &options.plot_holds,
+        &options.plot_records,
+    ];
     let pictures: Vec<&Path> = pictures
         .into_iter()
         .flatten()
@@ -41,6 +72,16 @@ pub fn run(options: &FitOptions, call: &Call) -> Result<Ending> {
     files.extend(options.report.as_deref());
     let report = Report::new(&options.output, call, &files)?;
     let plan = FitPlan::new(options)?;
+    if options.plot_holds.is_some() && !holds::are_there(&plan) {
+        return Err(Error::Input(
+            "`plot_holds`: the load point is never held, so there is nothing to draw".into(),
+        ));
+    }
+    if options.plot_records.is_some() && plan.recordings.len() == 1 {
+        return Err(Error::Input(
+            "`plot_records`: there is one record, and none to compare it with".into(),
+        ));
+    }
     if options.output.explain {
         call.say(plan.explain());
     }
@@ -52,7 +93,20 @@ pub fn run(options: &FitOptions, call: &Call) -> Result<Ending> {
             all => format!(", {} of {all}", i + 1),
         };
         progress.begin(&format!("fitting the law {}{number}", law.name));
-        found.push(fitted(&plan, law, options)?);
+        let fitted = fitted(&plan, law, options)?;
+        found.push(match plan.sampling.get(i) {
+            None => fitted,
+            Some(sampling) => {
+                progress.begin(&format!(
+                    "drawing from the posterior of {}{number}",
+                    law.name
+                ));
+                call.watch();
+                let drawn = draw(&plan, fitted, sampling, call);
+                call.unwatch();
+                drawn?
+            }
+        });
     }
     // The law with the most information first.
     let least = |one: &Fitted<'_>| one.comparison.map_or(0.0, |comparison| comparison.akaike);
@@ -64,14 +118,19 @@ pub fn run(options: &FitOptions, call: &Call) -> Result<Ending> {
     };
     progress.finish();
     let best = &found[0];
-    let rows = rows(&plan, &best.fit);
+    let rows = rows(&plan, best.fit());
     let about = About::new(&plan);
     if let Some(path) = &options.plot {
         report.draw(path, &views::picture_of_fit(&rows, &best.law.name))?;
     }
     if let Some(path) = &options.plot_parameters {
-        let stress = plan.measured.normal_stress;
-        report.draw(path, &views::picture_of_parameters(&best.fit, stress))?;
+        report.draw(path, &page::parameters_picture(&plan, best))?;
+    }
+    if let Some(path) = &options.plot_holds {
+        report.draw(path, &views::picture_of_holds(&best.holds))?;
+    }
+    if let Some(path) = &options.plot_records {
+        report.draw(path, &records::picture(&plan, best))?;
     }
     if let Some(path) = &options.plot_law {
         report.draw(path, &page::law_picture(&plan, best)?)?;
@@ -80,7 +139,9 @@ pub fn run(options: &FitOptions, call: &Call) -> Result<Ending> {
         page::write(path, call, &plan, (&found, &steps), &rows)?;
     }
     let result = object::result(&plan, &found, &steps);
-    let is_decided = best.fit.verdict.name() == "converged";
+    let doubts = best.drawn.iter().flat_map(|one| &one.posterior.undecided);
+    let mut undecided = best.fit().verdict.undecided.clone();
+    undecided.extend(doubts.cloned());
     let mut lines = object::lines(&plan, &found, &steps);
     let written = if report.format == Format::Table && options.output.format.is_none() {
         // A terminal shows what was found; thousands of rows beside it are for files, or for who asks for them.
@@ -89,54 +150,108 @@ pub fn run(options: &FitOptions, call: &Call) -> Result<Ending> {
         report.write(result.as_bytes())?
     } else if report.format == Format::Json {
         let mut result = result;
-        let objects = rows
-            .iter()
-            .map(|row| Value::Object(views::object(&views::fit_columns(), row, &about.units)));
+        let objects = rows.iter().map(|row| {
+            Value::Object(views::object(
+                &views::fit_columns(plan.recordings.len() > 1),
+                row,
+                &about.units,
+            ))
+        });
         result["rows"] = objects.collect();
-        let evaluations: usize = found.iter().map(|one| one.fit.evaluations).sum();
+        let evaluations: usize = found.iter().map(evaluations).sum();
         let work = json!({ "evaluations": evaluations });
         report.write(&report.envelope(&about, json!({}), result, work, None))?
     } else {
         let mut remarks = report.remarks(&about, &Value::Null);
         remarks.extend(lines.iter().cloned());
-        report.write_all(&about.units, remarks, &views::fit_columns(), &rows)?
+        report.write_all(
+            &about.units,
+            remarks,
+            &views::fit_columns(plan.recordings.len() > 1),
+            &rows,
+        )?
     };
     for line in lines {
         report.say(line);
     }
     Ok(match written {
-        Ending::Done if !is_decided => report.undecided(format_args!(
+        Ending::Done if best.fit().verdict.name() != "converged" => report.undecided(format_args!(
             "the fit, as {}; give that parameter a value, or use a record that determines it",
-            best.fit.verdict.undecided.join("; ")
+            undecided.join("; ")
         )),
+        Ending::Done if !undecided.is_empty() => {
+            report.undecided(format_args!("the posterior, as {}", undecided.join("; ")))
+        }
         ending => ending,
     })
 }
 
+fn evaluations(one: &Fitted<'_>) -> usize {
+    let alone = one.together.alone.iter();
+    let alone = alone.filter_map(|own| own.fit.as_ref().ok());
+    let drawn = one
+        .drawn
+        .as_ref()
+        .map_or(0, |one| one.posterior.evaluations);
+    one.fit().evaluations + alone.map(|fit| fit.evaluations).sum::<usize>() + drawn
+}
+
 fn fitted<'a>(plan: &FitPlan, law: &'a LawToFit, options: &FitOptions) -> Result<Fitted<'a>> {
-    let fit = plan.fit(law)?;
-    let whole = (&plan.motion, &plan.record);
+    let together = plan.fit(law)?;
+    let (fit, whole) = (&together.fit, together.pieces(plan));
     let comparison = if plan.laws.len() > 1 {
-        let akaike = akaike(&plan.record, &fit);
-        let mut validate = Validate(&fit);
+        let akaike = akaike(&together.records, fit);
+        let mut validate = Validate(fit);
         Some(Comparison {
             akaike,
-            cross_validation: law.with_problem(plan, whole, &mut validate)?,
+            cross_validation: law.with_problem(plan, &whole, &mut validate)?,
         })
     } else {
         None
     };
     let crosscheck = if options.crosscheck {
-        Some(law.with_problem(plan, whole, &mut Recheck(&fit))?)
+        Some(law.with_problem(plan, &whole, &mut Recheck(fit))?)
     } else {
         None
     };
     Ok(Fitted {
         law,
-        fit,
+        holds: law.with_problem(plan, &whole, &mut Holds(fit))?,
+        drawn: None,
+        together,
         comparison,
         crosscheck,
     })
+}
+
+fn draw<'a>(
+    plan: &FitPlan,
+    fitted: Fitted<'a>,
+    sampling: &Sampling,
+    call: &Call,
+) -> Result<Fitted<'a>> {
+    let stop = call.flag();
+    let goes_on = || !stop.load(Ordering::Relaxed);
+    let given = (&fitted.together, sampling);
+    let (posterior, minima) = plan.posterior(fitted.law, given, &goes_on)?;
+    let drawn = Drawn {
+        posterior,
+        sampling: sampling.clone(),
+        minima: minima.len(),
+    };
+    Ok(Fitted {
+        drawn: Some(drawn),
+        ..fitted
+    })
+}
+
+struct Holds<'a>(&'a Fit);
+
+impl WithProblem for Holds<'_> {
+    type Output = Vec<Hold>;
+    fn call<const N: usize>(&mut self, problem: &Problem<'_, N>) -> Result<Vec<Hold>> {
+        twinslip::fit::holds(problem, self.0)
+    }
 }
 
 struct Validate<'a>(&'a Fit);
@@ -158,14 +273,22 @@ impl WithProblem for Recheck<'_> {
 }
 
 fn rows(plan: &FitPlan, fit: &Fit) -> Vec<FitRow> {
-    let record = &plan.record;
-    let each = (0..record.times.len()).map(|i| FitRow {
-        time: record.times[i],
-        displacement: record.displacement[i],
-        observed: record.friction[i],
-        fitted: fit.fitted[i],
-    });
-    each.collect()
+    let mut fitted = fit.fitted.iter();
+    let mut rows = Vec::with_capacity(fit.fitted.len());
+    for (number, Recording { record, .. }) in plan.recordings.iter().enumerate() {
+        let each = record.times.iter().zip(&record.displacement);
+        let each = each.zip(&record.friction).zip(&mut fitted);
+        rows.extend(
+            each.map(|(((&time, &displacement), &observed), &fitted)| FitRow {
+                record: number + 1,
+                time,
+                displacement,
+                observed,
+                fitted,
+            }),
+        );
+    }
+    rows
 }
 
 /// What the result is of.
@@ -176,21 +299,27 @@ pub struct About {
 
 impl About {
     fn new(plan: &FitPlan) -> Self {
-        let [time, displacement, friction, normal] = &plan.measured.columns;
-        let columns = json!({
-            "time": time,
-            "displacement": displacement,
-            "friction": friction,
-            "normal_stress": normal,
-        });
+        let columns = |own: &Recording| {
+            let [time, displacement, friction, normal] = &own.measured.columns;
+            json!({
+                "time": time,
+                "displacement": displacement,
+                "friction": friction,
+                "normal_stress": normal,
+            })
+        };
+        let each = |of: &dyn Fn(&Recording) -> Value| match &plan.recordings[..] {
+            [one] => of(one),
+            all => all.iter().map(of).collect(),
+        };
         let names: Vec<&str> = plan.laws.iter().map(|law| law.name.as_str()).collect();
         let echo = json!({
             "law": names.join(","),
             "states": plan.laws[0].states,
             "reference_rate": plan.reference_rate,
-            "normal_stress": plan.measured.normal_stress,
-            "samples": plan.record.times.len(),
-            "columns": columns,
+            "normal_stress": each(&|own| json!(own.measured.normal_stress)),
+            "samples": each(&|own| json!(own.record.times.len())),
+            "columns": each(&columns),
         });
         About {
             echo: echo.as_object().cloned().unwrap_or_default(),

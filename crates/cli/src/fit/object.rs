@@ -1,28 +1,44 @@
 //! What a fit says of itself: as an object, and in lines.
 
-use super::Fitted;
 use super::steps::FittedStep;
+use super::{Fitted, posterior, records};
+use crate::holds;
 use serde_json::{Map, Value, json};
-use twinslip::fit::{DRIFT, Fit, FittedParameter, Scale, Verdict};
+use twinslip::fit::{Autoregression, DRIFT, Fit, FittedParameter, Scale, Verdict};
 use twinslip_output::seven_digits;
-use twinslip_tasks::scene::{FitPlan, LawToFit};
+use twinslip_tasks::scene::{FitPlan, LawToFit, Recording};
 use twinslip_tasks::views::{digits_of, in_digits, scale_name};
 
 /// `result`, without rows.
 pub fn result(plan: &FitPlan, found: &[Fitted<'_>], steps: &[FittedStep]) -> Value {
     let best = &found[0];
-    let mut fit = of_fit(plan, best.law, &best.fit);
+    let mut fit = of_fit(plan, best.law, best.fit());
     fit["derivatives_difference"] = json!(best.crosscheck);
+    let programs: Vec<Value> = plan.recordings.iter().map(program).collect();
     let mut result = json!({
         "fit": fit,
-        "program": program(plan),
-        "notes": plan.measured.notes,
+        "program": match &programs[..] {
+            [one] => one.clone(),
+            _ => json!(programs),
+        },
+        "notes": notes(plan).collect::<Vec<_>>(),
     });
+    if !best.holds.is_empty() {
+        result["holds"] = holds::object(&best.holds, plan.recordings.len() > 1);
+        result["healing_rate"] = holds::rate(&best.holds);
+    }
+    if !best.together.alone.is_empty() {
+        result["records"] = records::objects(plan, best);
+        result["agreement"] = records::agreement(best);
+    }
+    if let Some(drawn) = &best.drawn {
+        result["posterior"] = posterior::object(plan, best, drawn);
+    }
     if found.len() > 1 {
         let least = best.comparison.map(|one| one.akaike);
         let each = found.iter().map(|one| {
             let akaike = one.comparison.map(|one| one.akaike);
-            let mut object = of_fit(plan, one.law, &one.fit);
+            let mut object = of_fit(plan, one.law, one.fit());
             object["aicc"] = json!(akaike);
             object["aicc_difference"] = json!(akaike.zip(least).map(|(own, least)| own - least));
             object["cross_validation_rms"] =
@@ -34,6 +50,7 @@ pub fn result(plan: &FitPlan, found: &[Fitted<'_>], steps: &[FittedStep]) -> Val
     if !steps.is_empty() {
         let each = steps.iter().map(|step| {
             let mut object = json!({
+                "record": step.record + 1,
                 "time": step.time,
                 "from": step.window.0,
                 "to": step.window.1,
@@ -51,10 +68,10 @@ pub fn result(plan: &FitPlan, found: &[Fitted<'_>], steps: &[FittedStep]) -> Val
 }
 
 /// How the load point moved, where that is not from sample to sample.
-fn program(plan: &FitPlan) -> Value {
+fn program(recording: &Recording) -> Value {
     /// More stretches are not told.
     const TOLD: usize = 100;
-    let stretches = &plan.motion.stretches;
+    let stretches = &recording.motion.stretches;
     if stretches.len() > TOLD {
         return Value::Null;
     }
@@ -68,7 +85,13 @@ fn program(plan: &FitPlan) -> Value {
     each.collect()
 }
 
-fn of_fit(plan: &FitPlan, law: &LawToFit, fit: &Fit) -> Value {
+/// What was made of the records that a user may not have meant.
+fn notes(plan: &FitPlan) -> impl Iterator<Item = String> {
+    let each = plan.recordings.iter();
+    each.flat_map(|own| own.measured.notes.iter().cloned())
+}
+
+pub(super) fn of_fit(plan: &FitPlan, law: &LawToFit, fit: &Fit) -> Value {
     let parameters: Vec<Value> = fit
         .parameters
         .iter()
@@ -80,9 +103,9 @@ fn of_fit(plan: &FitPlan, law: &LawToFit, fit: &Fit) -> Value {
         .collect();
     let mut fixed = Map::new();
     fixed.insert("reference_rate".into(), json!(plan.reference_rate));
-    fixed.insert("normal_stress".into(), json!(plan.measured.normal_stress));
+    fixed.insert("normal_stress".into(), json!(stress(plan, None)));
     for (name, value) in law.fixed(plan.reference_rate) {
-        let (factor, _) = unit(plan, name);
+        let (factor, _) = unit(plan, name, None);
         fixed.insert(name.into(), json!(value * factor));
     }
     json!({
@@ -97,17 +120,30 @@ fn of_fit(plan: &FitPlan, law: &LawToFit, fit: &Fit) -> Value {
         "residual_rms": fit.rms,
         "degrees_of_freedom": fit.degrees_of_freedom,
         "effective_samples": fit.effective_samples,
-        "noise": {
-            "autoregression": fit.noise.coefficients,
-            "innovation": fit.noise.innovation.sqrt(),
+        "noise": match &fit.noise[..] {
+            [one] => noise(one),
+            all => all.iter().map(noise).collect(),
         },
         "evaluations": fit.evaluations,
     })
 }
 
+fn noise(one: &Autoregression) -> Value {
+    json!({
+        "autoregression": one.coefficients,
+        "innovation": one.innovation.sqrt(),
+    })
+}
+
+/// The normal stress of a record, or of the first one.
+pub(super) fn stress(plan: &FitPlan, of_record: Option<usize>) -> Option<f64> {
+    let own = &plan.recordings[of_record.unwrap_or(0)];
+    own.measured.normal_stress
+}
+
 /// The unit of a parameter and how large it is in what fits compute with.
-fn unit(plan: &FitPlan, name: &str) -> (f64, &'static str) {
-    match (name, plan.measured.normal_stress) {
+pub(super) fn unit(plan: &FitPlan, name: &str, of_record: Option<usize>) -> (f64, &'static str) {
+    match (name, stress(plan, of_record)) {
         ("stiffness", Some(sigma)) => (sigma, "Pa/m"),
         ("stiffness", None) => (1.0, "1/m"),
         ("slip_length" | "slip_length_2", _) => (1.0, "m"),
@@ -118,10 +154,10 @@ fn unit(plan: &FitPlan, name: &str) -> (f64, &'static str) {
 }
 
 fn of_parameter(plan: &FitPlan, verdict: &Verdict, parameter: &FittedParameter) -> Value {
-    let (factor, unit) = unit(plan, &parameter.name);
+    let (factor, unit) = unit(plan, &parameter.name, parameter.of_record);
     // An end that there is not is null.
     let number = |x: f64| Some(x * factor).filter(|x| x.is_finite());
-    json!({
+    let mut object = json!({
         "name": parameter.name,
         "unit": unit,
         "value": number(parameter.value).filter(|_| !verdict.has_run_away(parameter)),
@@ -129,13 +165,22 @@ fn of_parameter(plan: &FitPlan, verdict: &Verdict, parameter: &FittedParameter) 
         "interval_95": [number(parameter.interval.0), number(parameter.interval.1)],
         "scale": scale_name(parameter.scale),
         "widening": number(parameter.widening / factor),
-    })
+    });
+    if let Some(at) = parameter.of_record {
+        object["record"] = json!(at + 1);
+    }
+    object
 }
 
 /// In words, one a line.
 pub fn lines(plan: &FitPlan, found: &[Fitted<'_>], steps: &[FittedStep]) -> Vec<String> {
     let best = &found[0];
-    let mut lines = plan.measured.notes.clone();
+    let mut lines: Vec<String> = notes(plan).collect();
+    let samples: usize = plan
+        .recordings
+        .iter()
+        .map(|own| own.record.times.len())
+        .sum();
     let told = |law: &LawToFit| match law.states {
         1 => law.name.clone(),
         states => format!("{} with {states} state variables", law.name),
@@ -143,13 +188,18 @@ pub fn lines(plan: &FitPlan, found: &[Fitted<'_>], steps: &[FittedStep]) -> Vec<
     lines.push(format!(
         "{}: {}, residuals {} (root mean square), {} samples (effective sample size {:.0})",
         told(best.law),
-        best.fit.verdict.name(),
-        in_digits(best.fit.rms, 4),
-        plan.record.times.len(),
-        best.fit.effective_samples
+        best.fit().verdict.name(),
+        in_digits(best.fit().rms, 4),
+        samples,
+        best.fit().effective_samples
     ));
-    lines.extend(all_in_words(plan, &best.fit));
-    lines.extend(best.fit.verdict.undecided.iter().cloned());
+    lines.extend(all_in_words(plan, best.fit()));
+    lines.extend(best.fit().verdict.undecided.iter().cloned());
+    lines.extend(records::lines(plan, best));
+    lines.extend(holds::lines(&best.holds, plan.recordings.len() > 1));
+    if let Some(drawn) = &best.drawn {
+        lines.extend(posterior::lines(plan, best, drawn));
+    }
     if let Some(difference) = best.crosscheck {
         lines.push(format!(
             "derivatives by sensitivities of CVODES differ by {difference:.1e} of the largest"
@@ -175,8 +225,8 @@ pub fn lines(plan: &FitPlan, found: &[Fitted<'_>], steps: &[FittedStep]) -> Vec<
             "{}: AICc {by:.1} above that of {}, {judged}; residuals {:.3e}, verdict {}{blocks}",
             told(other.law),
             told(best.law),
-            other.fit.rms,
-            other.fit.verdict.name()
+            other.fit().rms,
+            other.fit().verdict.name()
         ));
     }
     for step in steps {
@@ -206,7 +256,7 @@ fn all_in_words(plan: &FitPlan, fit: &Fit) -> impl Iterator<Item = String> {
 }
 
 fn in_words(plan: &FitPlan, parameter: &FittedParameter, has_run_away: bool) -> String {
-    let (factor, unit) = unit(plan, &parameter.name);
+    let (factor, unit) = unit(plan, &parameter.name, parameter.of_record);
     let unit = match unit {
         "1" => String::new(),
         unit => format!(" {unit}"),
@@ -228,7 +278,7 @@ fn in_words(plan: &FitPlan, parameter: &FittedParameter, has_run_away: bool) -> 
         (false, true) => format!("below {}{unit}", in_digits(high * factor, digits)),
         (false, false) => "without ends".into(),
     };
-    let name = &parameter.name;
+    let name = parameter.label();
     if has_run_away {
         return format!("{name}: not determined, 95 % interval {interval}");
     }

@@ -1,19 +1,21 @@
 //! The page of a fit: all that is known of it, to be read in a browser.
 
 use super::Fitted;
-use super::object;
 use super::steps::FittedStep;
+use super::{object, posterior, records};
 use crate::call::Call;
 use crate::report::sundials;
 use std::path::Path;
 use twinslip::error::{Error, Result};
+use twinslip::fit::FittedParameter;
 use twinslip::number::between_in_log;
 use twinslip_output::Place;
 use twinslip_output::page::{Figure, Page, Table};
 use twinslip_output::plot::{Area, Axis, Drawing, Panel, PlotSeries};
 use twinslip_tasks::scene::FitPlan;
 use twinslip_tasks::views::{
-    FitRow, digits_of, in_digits, parameter_label, picture_of_fit, picture_of_parameters,
+    FitRow, digits_of, in_digits, parameter_label, picture_of_fit, picture_of_holds,
+    picture_of_parameters,
 };
 
 /// Points of the law.
@@ -26,18 +28,19 @@ const BEYOND: f64 = 10.0;
 /// # Errors
 /// Those of the law's steady state.
 pub fn law_picture(plan: &FitPlan, fitted: &Fitted<'_>) -> Result<Drawing> {
-    let rates = plan.steps.stretches.iter().flat_map(|stretch| {
-        let (from, to) = stretch.velocity;
-        [from, to]
+    let rates = plan.recordings.iter().flat_map(|own| {
+        let stretches = own.steps.stretches.iter();
+        let ends = stretches.flat_map(|one| [one.velocity.0, one.velocity.1]);
+        ends.chain([own.steps.before])
     });
-    let rates = rates.chain([plan.steps.before]).filter(|v| *v > 0.0);
+    let rates = rates.filter(|v| *v > 0.0);
     let (low, high) = rates.fold((f64::INFINITY, 0.0_f64), |(low, high), v| {
         (low.min(v), high.max(v))
     });
     let part = |i: usize| i as f64 / (POINTS - 1) as f64;
     let grid = (0..POINTS).map(|i| between_in_log(low / BEYOND, high * BEYOND, part(i)));
     let grid: Vec<f64> = grid.collect();
-    let band = fitted.law.steady_band(plan, &fitted.fit, &grid)?;
+    let band = fitted.law.steady_band(plan, fitted.fit(), &grid)?;
     let of = |i: usize| band.iter().map(|three| three[i]).collect::<Vec<f64>>();
     let band = Area {
         label: "95 % of the fit".into(),
@@ -61,6 +64,14 @@ pub fn law_picture(plan: &FitPlan, fitted: &Fitted<'_>) -> Result<Drawing> {
         )
     };
     Ok(Drawing::columns(vec![vec![panel]]))
+}
+
+/// What is known of the parameters: the draws where there are some, else profiles and ellipses.
+pub fn parameters_picture(plan: &FitPlan, fitted: &Fitted<'_>) -> Drawing {
+    match &fitted.drawn {
+        Some(drawn) => posterior::picture(plan, fitted, drawn),
+        None => picture_of_parameters(fitted.fit(), object::stress(plan, None)),
+    }
 }
 
 /// Whether a page can have this name.
@@ -111,30 +122,58 @@ pub fn write(
             "Parameters",
             "Above each column how the sum of squares grows along a parameter, in standard errors, and the ends of its 95 % interval; \
              below, the ellipses that hold 68 and 95 % of each pair.",
-            &picture_of_parameters(&best.fit, plan.measured.normal_stress),
+            &picture_of_parameters(best.fit(), object::stress(plan, None)),
         )?,
     ];
+    if best.drawn.is_some() {
+        figures.push(figure(
+            "posterior",
+            "Posterior",
+            "Above each column the distribution of a parameter by the draws, with its median and the values between which 95 % lie; below, the draws of each pair.",
+            &parameters_picture(plan, best),
+        )?);
+    }
+    if !best.holds.is_empty() {
+        figures.push(figure(
+            "holds",
+            "Holds",
+            "Healing, and the friction at the end of holds, against their duration.",
+            &picture_of_holds(&best.holds),
+        )?);
+    }
+    if plan.recordings.len() > 1 {
+        figures.push(figure(
+            "records",
+            "Records",
+            "What each record says of the parameters that they share, with 95 % intervals, and all of them together.",
+            &records::picture(plan, best),
+        )?);
+    }
     figures.push(figure(
         "fig03",
         "Steady-state law",
         "The steady-state friction that follows, with its 95 % band.",
         &law_picture(plan, best)?,
     )?);
-    let file = Path::new(&plan.measured.file);
-    let name = file.file_name().unwrap_or(file.as_os_str());
+    let names = plan.recordings.iter().map(|own| own.name());
+    let samples: usize = plan
+        .recordings
+        .iter()
+        .map(|own| own.record.times.len())
+        .sum();
     let page = Page {
-        title: format!("Fit of {}", name.to_string_lossy()),
+        title: format!("Fit of {}", names.collect::<Vec<_>>().join(", ")),
         lead: object::lines(plan, found, steps),
         facts: vec![
-            ("verdict".into(), best.fit.verdict.name().into()),
-            ("samples".into(), plan.record.times.len().to_string()),
+            ("verdict".into(), best.fit().verdict.name().into()),
+            ("samples".into(), samples.to_string()),
             (
                 "effective sample size".into(),
-                format!("{:.0}", best.fit.effective_samples),
+                format!("{:.0}", best.fit().effective_samples),
             ),
             (
                 "residuals, root mean square".into(),
-                in_digits(best.fit.rms, 3),
+                in_digits(best.fit().rms, 3),
             ),
         ],
         figures,
@@ -159,8 +198,8 @@ pub fn write(
 }
 
 fn parameters(plan: &FitPlan, fitted: &Fitted<'_>) -> Table {
-    let stress = plan.measured.normal_stress;
-    let rows = fitted.fit.parameters.iter().map(|one| {
+    let rows = fitted.fit().parameters.iter().map(|one| {
+        let stress = object::stress(plan, one.of_record);
         let (label, by) = parameter_label(&one.name, stress.is_some());
         let by = by * stress.filter(|_| one.name == "stiffness").unwrap_or(1.0);
         let digits = digits_of(one);
@@ -169,9 +208,9 @@ fn parameters(plan: &FitPlan, fitted: &Fitted<'_>) -> Table {
             false => "none".into(),
         };
         vec![
-            one.name.clone(),
+            one.label(),
             label,
-            match fitted.fit.verdict.has_run_away(one) {
+            match fitted.fit().verdict.has_run_away(one) {
                 true => "not determined".into(),
                 false => number(one.value),
             },
@@ -197,11 +236,12 @@ fn parameters(plan: &FitPlan, fitted: &Fitted<'_>) -> Table {
 }
 
 fn correlations(fitted: &Fitted<'_>) -> Table {
-    let parameters = &fitted.fit.parameters;
-    let names = parameters.iter().map(|one| one.name.clone());
+    let parameters = &fitted.fit().parameters;
+    let names = parameters.iter().map(FittedParameter::label);
     let rows = parameters.iter().enumerate().map(|(i, one)| {
-        let each = (0..parameters.len()).map(|j| format!("{:.3}", fitted.fit.correlation[(i, j)]));
-        std::iter::once(one.name.clone()).chain(each).collect()
+        let each =
+            (0..parameters.len()).map(|j| format!("{:.3}", fitted.fit().correlation[(i, j)]));
+        std::iter::once(one.label()).chain(each).collect()
     });
     Table {
         id: "table2".into(),

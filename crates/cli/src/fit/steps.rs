@@ -2,10 +2,12 @@
 
 use twinslip::error::Result;
 use twinslip::fit::{Fit, Motion, Record, Stretch};
-use twinslip_tasks::scene::{FitPlan, LawToFit};
+use twinslip_tasks::scene::{FitPlan, LawToFit, Piece, Recording};
 
 /// A step, and what it says alone.
 pub struct FittedStep {
+    /// Of which record, by its place among them.
+    pub record: usize,
     /// When the velocity changes, in s.
     pub time: f64,
     /// From the change before to the one after.
@@ -21,8 +23,20 @@ pub struct FittedStep {
 /// # Errors
 /// [`twinslip::Error::Input`] where the load point moves as it was recorded: it has no steps then.
 pub fn each(plan: &FitPlan, law: &LawToFit) -> Result<Vec<FittedStep>> {
-    let stretches = &plan.motion.stretches;
-    if plan.motion != plan.steps {
+    let mut all = Vec::new();
+    for (at, recording) in plan.recordings.iter().enumerate() {
+        all.extend(of_recording(plan, law, (at, recording))?);
+    }
+    Ok(all)
+}
+
+fn of_recording(
+    plan: &FitPlan,
+    law: &LawToFit,
+    (at, recording): (usize, &Recording),
+) -> Result<Vec<FittedStep>> {
+    let stretches = &recording.motion.stretches;
+    if recording.motion != recording.steps {
         return Err(twinslip::Error::Input(
             "`each_step`: the load point moves as it was recorded, and has no steps".into(),
         ));
@@ -31,21 +45,27 @@ pub fn each(plan: &FitPlan, law: &LawToFit) -> Result<Vec<FittedStep>> {
     let steps = stretches.windows(2).enumerate().filter(|(_, pair)| {
         pair.iter().all(steady) && pair[0].velocity.0 > 0.0 && pair[1].velocity.0 > 0.0
     });
-    let of = |(at, pair): (usize, &[Stretch])| {
+    let of = |(last, pair): (usize, &[Stretch])| {
         let window = (pair[0].span.0, pair[1].span.1);
         let alone = Motion {
             before: pair[0].velocity.0,
             stretches: pair.to_vec(),
         };
         let motion = Motion {
-            before: plan.motion.before,
-            stretches: stretches[..at + 2].to_vec(),
+            before: recording.motion.before,
+            stretches: stretches[..last + 2].to_vec(),
+        };
+        let piece = Piece {
+            of: at,
+            motion: &motion,
+            record: &part(&recording.record, window),
         };
         FittedStep {
+            record: at,
             time: pair[1].span.0,
             window,
             driving: (pair[0].velocity.0, pair[1].velocity.0),
-            fit: plan.fit_to(law, (&motion, &alone), &part(&plan.record, window)),
+            fit: plan.fit_to(law, piece, &alone),
         }
     };
     Ok(steps.map(of).collect())

@@ -179,7 +179,7 @@ fn sections() -> Vec<Section> {
         section(
             "fit",
             "One row for each sample.",
-            described(&views::fit_columns()),
+            described(&views::fit_columns(true)),
         ),
     ]
 }

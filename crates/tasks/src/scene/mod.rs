@@ -41,6 +41,7 @@ mod file;
 mod fit;
 mod following;
 mod general;
+mod holds;
 mod instant;
 mod ivp;
 mod law;
@@ -81,12 +82,16 @@ pub use equilibria::{ClassifiedEquilibria, ClassifiedEquilibrium, EquilibriaPlan
 pub use event::SlipEvent;
 pub use explain::{Keeping, explain};
 pub use file::SceneFile;
-pub use fit::{FitOptions, FitPlan, LawToFit, Measured, WithProblem};
+pub use fit::{
+    FitOptions, FitPlan, FittedRecords, LawToFit, Measured, OwnRecord, Piece, Recording,
+    WithProblem,
+};
 pub use following::Following;
 pub use general::{
     Free, GeneralBranchPlan, GeneralFound, GeneralLocusPlan, GeneralRow, RowKind, SlabSubject,
     Subject, TextSubject, plane, shown,
 };
+pub use holds::HoldOfRun;
 pub use instant::{Instant, run_columns};
 pub use ivp::{
     Halt, IvpAsked, IvpError, IvpEvent, IvpFormula, IvpOutcome, IvpParts, IvpPlan, IvpSolution,

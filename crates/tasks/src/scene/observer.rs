@@ -2,8 +2,9 @@
 
 use super::column::Column;
 use super::event::Detector;
+use super::holds::Begun;
 use super::instant::Instant;
-use super::plan::{Plan, Sampling};
+use super::plan::{EVENT_THRESHOLD, Plan, Sampling};
 use super::program::Stretch;
 use super::run::{PICTURED, RESTS, RunOutcome, Sink};
 use super::slip::{SlipRates, Slips, slips};
@@ -18,6 +19,8 @@ pub(super) struct RunObserver<'a> {
     plan: &'a Plan,
     sink: &'a mut dyn Sink,
     detector: Option<Detector>,
+    /// Where stretches have begun.
+    begins: Begun,
     rates: SlipRates,
     needs_slip: bool,
     /// Whether the units of the steps are those of the system.
@@ -51,13 +54,20 @@ impl<'a> RunObserver<'a> {
         let mut observer = RunObserver {
             plan,
             sink,
-            detector: plan
-                .detected()
-                .map(|threshold| Detector::new(&plan.system, &rates, threshold)),
+            detector: match (plan.detected(), plan.holds()) {
+                (threshold, true) => {
+                    let threshold = threshold.unwrap_or(EVENT_THRESHOLD);
+                    Some(Detector::new(&plan.system, &rates, threshold).with_maxima())
+                }
+                (Some(threshold), false) => Some(Detector::new(&plan.system, &rates, threshold)),
+                (None, false) => None,
+            },
+            begins: Begun::default(),
             needs_slip: plan.needs_slip(),
             keeps_units: plan.system.slides(),
             only_end: plan.sampling == Sampling::FinalOnly
                 && plan.events.is_none()
+                && !plan.holds()
                 && !plan.picture,
             stretch: Stretch {
                 span: (0.0, 0.0),
@@ -109,6 +119,7 @@ impl<'a> RunObserver<'a> {
     pub fn begin(&mut self, stretch: &Stretch, from: &Vector) {
         let first = self.begun == 0;
         self.begun += 1;
+        self.begins.begin(stretch.span.0, from[0]);
         if let Some(detector) = &mut self.detector {
             detector.begin(stretch, from.as_slice(), &self.slips);
         }
@@ -252,9 +263,15 @@ impl<'a> RunObserver<'a> {
         }
         let known = end.is_ok() || plan.observed();
         fill(&mut self.row, &plan.columns, plan, &self.here);
+        let found = self.detector.map(Detector::into_found);
+        let (events, maxima) = found.unwrap_or_default();
         RunOutcome {
             last: known.then_some(self.row),
-            events: self.detector.map_or_else(Vec::new, Detector::into_events),
+            events: match plan.detected() {
+                Some(_) => events,
+                None => Vec::new(),
+            },
+            holds: self.begins.holds(plan, &maxima),
             catalogue: None,
             work: Work::default(),
             error_estimate: None,

@@ -220,7 +220,7 @@ impl Plan {
 
     /// Whether anything must be seen between start and end.
     pub fn observed(&self) -> bool {
-        self.sampling != Sampling::FinalOnly || self.needs_slip() || self.picture
+        self.sampling != Sampling::FinalOnly || self.needs_slip() || self.picture || self.holds()
     }
 }
 

@@ -3,6 +3,7 @@
 use super::equations::Equations;
 use super::estimate::{estimate, timed};
 use super::event::SlipEvent;
+use super::holds::HoldOfRun;
 use super::many::{Catalogue, ManyCheckpoint};
 use super::observer::RunObserver;
 use super::plan::Plan;
@@ -42,6 +43,8 @@ pub struct RunOutcome {
     pub last: Option<Vec<f64>>,
     /// The events, dimensionless.
     pub events: Vec<SlipEvent>,
+    /// The holds of its program.
+    pub holds: Vec<HoldOfRun>,
     /// The slip events of a run of many interfaces, where they are asked for.
     pub catalogue: Option<Catalogue>,
     /// What it cost, the second run of an error estimate included.

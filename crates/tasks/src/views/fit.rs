@@ -7,6 +7,8 @@ use twinslip_output::plot::{Axis, Drawing, Mark, Panel, PlotSeries, Stroke, Symb
 /// A sample of a record, and what was fitted to it; in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FitRow {
+    /// Which of several records, from 1.
+    pub record: usize,
     /// In s, as in the record.
     pub time: f64,
     /// Of the load point since the beginning of the window, in m.
@@ -17,10 +19,12 @@ pub struct FitRow {
     pub fitted: f64,
 }
 
-/// The columns of a fit.
-pub fn fit_columns() -> Vec<Column<FitRow>> {
+/// The columns of a fit, of one record or of several.
+pub fn fit_columns(several: bool) -> Vec<Column<FitRow>> {
     use Quantity::{Length, Number, Time};
-    vec![
+    let number = Column::new("record", Number, |row: &FitRow| row.record.into())
+        .meaning("number of the record");
+    let mut columns = vec![
         Column::new("time", Time, |row: &FitRow| row.time.into()).meaning("time"),
         Column::new("displacement", Length, |row: &FitRow| {
             row.displacement.into()
@@ -34,7 +38,11 @@ pub fn fit_columns() -> Vec<Column<FitRow>> {
             (row.observed - row.fitted).into()
         })
         .meaning("observed minus fitted friction"),
-    ]
+    ];
+    if several {
+        columns.insert(0, number);
+    }
+    columns
 }
 
 /// Metres, as laboratories have them.
@@ -48,11 +56,20 @@ const TWO_OF_68: f64 = 2.279;
 /// Standard errors on each side of 95 %.
 const NORMAL_95: f64 = 1.96;
 
-/// Friction and residuals against the displacement.
+/// Friction and residuals against the displacement, a column for each record.
 pub fn picture_of_fit(rows: &[FitRow], law: &str) -> Drawing {
+    let records = rows.chunk_by(|one, other| one.record == other.record);
+    Drawing::columns(records.map(|rows| one_record(rows, law)).collect())
+}
+
+fn one_record(rows: &[FitRow], law: &str) -> Vec<Panel> {
     let x = || Axis::linear("load-point displacement [µm]");
     let along: Vec<f64> = rows.iter().map(|row| row.displacement * MICRO).collect();
     let of = |y: &dyn Fn(&FitRow) -> f64| rows.iter().map(y).collect::<Vec<f64>>();
+    let title = match rows[0].record {
+        1 => "friction".to_owned(),
+        number => format!("friction, record {number}"),
+    };
     let friction = Panel {
         series: vec![
             PlotSeries::dots("measured", along.clone(), of(&|row| row.observed)).colour(4),
@@ -64,7 +81,7 @@ pub fn picture_of_fit(rows: &[FitRow], law: &str) -> Drawing {
             .colour(1)
             .wide(),
         ],
-        ..Panel::new("friction", x(), Axis::linear("friction coefficient μ"))
+        ..Panel::new(title, x(), Axis::linear("friction coefficient μ"))
     };
     let residuals = Panel {
         series: vec![
@@ -73,7 +90,7 @@ pub fn picture_of_fit(rows: &[FitRow], law: &str) -> Drawing {
         zero_line: true,
         ..Panel::new("measured less fitted", x(), Axis::linear("residual [10⁻³]"))
     };
-    Drawing::columns(vec![vec![friction, residuals]])
+    vec![friction, residuals]
 }
 
 /// The name of a parameter with its symbol, its unit, and by what it is to be multiplied for that.
@@ -111,7 +128,8 @@ pub fn picture_of_parameters(fit: &Fit, stress: Option<f64>) -> Drawing {
     Drawing::columns(columns.collect())
 }
 
-fn label_of(parameter: &FittedParameter, stress: Option<f64>) -> (String, f64) {
+/// The label of a parameter and its factor, with the normal stress where the stiffness is in Pa/m.
+pub fn label_of(parameter: &FittedParameter, stress: Option<f64>) -> (String, f64) {
     let (label, by) = parameter_label(&parameter.name, stress.is_some());
     let is_stiffness = parameter.name == "stiffness";
     (label, by * stress.filter(|_| is_stiffness).unwrap_or(1.0))

@@ -12,6 +12,7 @@ mod equilibria;
 mod fit;
 mod general;
 mod heat_map;
+mod holds;
 mod labels;
 mod last_part;
 mod law;
@@ -33,10 +34,11 @@ pub use clusters::staircase;
 pub use diagram::{axis_label, branch_lines, branches, curves, parameters};
 pub use equilibria::equilibria_columns;
 pub use fit::{
-    FitRow, digits_of, fit_columns, in_digits, parameter_label, picture_of_fit,
+    FitRow, digits_of, fit_columns, in_digits, label_of, parameter_label, picture_of_fit,
     picture_of_parameters, scale_name,
 };
 pub use general::{general_branches, general_curves, general_lines};
+pub use holds::{measured_healing, picture_of_holds};
 pub use labels::named_strokes;
 pub use law::law_columns;
 pub use law_picture::picture_of_law;

@@ -68,6 +68,8 @@ pub struct FrictionFit {
     pub factor: DMatrix<f64>,
     /// Their correlations.
     pub correlation: DMatrix<f64>,
+    /// Draws of all parameters from the posterior, where the fit has any.
+    pub draws: Vec<Vec<f64>>,
     /// What was fixed, in SI.
     pub fixed: Vec<(&'static str, f64)>,
 }
@@ -80,6 +82,18 @@ struct Envelope {
 #[derive(Deserialize)]
 struct Outcome {
     fit: Fitted,
+    posterior: Option<Drawn>,
+}
+
+#[derive(Deserialize)]
+struct Drawn {
+    parameters: Vec<DrawnParameter>,
+}
+
+#[derive(Deserialize)]
+struct DrawnParameter {
+    name: String,
+    draws: Vec<f64>,
 }
 
 #[derive(Deserialize)]
@@ -116,7 +130,12 @@ impl FrictionFit {
                 "it is not what twinslip fit writes as JSON: {error}"
             ))
         })?;
-        Self::of(object.result.fit).map_err(wrong)
+        let Outcome { fit, posterior } = object.result;
+        let mut read = Self::of(fit).map_err(wrong)?;
+        if let Some(drawn) = posterior {
+            read.draws = draws(&read.parameters, &drawn).map_err(wrong)?;
+        }
+        Ok(read)
     }
 
     fn of(fit: Fitted) -> Result<Self, String> {
@@ -142,7 +161,10 @@ impl FrictionFit {
         let parameters: Vec<FittedParameter> = parameters.collect::<Result<_, String>>()?;
         for (i, one) in parameters.iter().enumerate() {
             if parameters[..i].iter().any(|other| other.name == one.name) {
-                return Err(format!("the fit has {} twice", one.name));
+                return Err(format!(
+                    "the fit has {} for each of several records, and interfaces have one: fit it as what they share, by `each`",
+                    one.name
+                ));
             }
         }
         let correlation = correlation(&fit.correlation, fit.parameters.len())?;
@@ -158,6 +180,7 @@ impl FrictionFit {
             factor: factor(&correlation)?,
             parameters,
             correlation,
+            draws: Vec::new(),
             fixed: fixed.collect(),
         })
     }
@@ -167,11 +190,47 @@ impl FrictionFit {
         self.parameters.iter().map(|one| one.value).collect()
     }
 
+    /// The values of all parameters in a draw: one of the posterior, spread over all of them, or else by the covariance from independent
+    /// normal numbers.
+    pub fn draw(&self, number: usize, normal: impl FnOnce(usize) -> DVector<f64>) -> Vec<f64> {
+        /// Steps of the golden section hit all draws before they hit one twice, and any number of them evenly.
+        const GOLDEN: f64 = 0.618_033_988_749_894_9;
+        let count = self.draws.len();
+        if count == 0 {
+            return self.above(&(&self.factor * normal(self.parameters.len())));
+        }
+        let place = (number as f64 * GOLDEN).fract() * count as f64;
+        self.draws[(place as usize).min(count - 1)].clone()
+    }
+
     /// The values of all parameters so many standard errors above the estimate.
     pub fn above(&self, deviations: &DVector<f64>) -> Vec<f64> {
         let all = self.parameters.iter().zip(deviations.iter());
         all.map(|(one, &by)| one.above(by)).collect()
     }
+}
+
+/// The draws of these parameters, a list for each draw.
+fn draws(parameters: &[FittedParameter], drawn: &Drawn) -> Result<Vec<Vec<f64>>, String> {
+    let of = |own: &FittedParameter| {
+        let found = drawn.parameters.iter().find(|one| one.name == own.name);
+        let found = found.ok_or_else(|| format!("its posterior has no draws of {}", own.name))?;
+        let is_right = |x: &&f64| x.is_finite() && (!own.log || **x > 0.0);
+        match found.draws.iter().find(|x| !is_right(x)) {
+            Some(wrong) => Err(format!("a draw of {} is {wrong}", own.name)),
+            None => Ok(&found.draws),
+        }
+    };
+    let columns = parameters
+        .iter()
+        .map(of)
+        .collect::<Result<Vec<_>, String>>()?;
+    let count = columns[0].len();
+    if count == 0 || columns.iter().any(|own| own.len() != count) {
+        return Err("its posterior has not as many draws of each parameter".to_owned());
+    }
+    let row = |i: usize| columns.iter().map(|own| own[i]).collect();
+    Ok((0..count).map(row).collect())
 }
 
 fn fitted(one: &OneFitted) -> Result<FittedParameter, String> {

@@ -73,6 +73,8 @@ struct Log {
     last_onset: Option<DoubleDouble>,
     open: Option<Open>,
     events: Vec<SlipEvent>,
+    /// The times and values of all maxima of the stress, where they are asked for.
+    maxima: Option<Vec<(f64, f64)>>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -87,6 +89,9 @@ struct Open {
 impl Log {
     /// The slip is faster than V_H from now on.
     fn open(&mut self, from: Option<Moment>) {
+        if let (Some(maxima), Some(from)) = (&mut self.maxima, from) {
+            maxima.push((from.time.hi(), from.stress));
+        }
         self.open = Some(Open {
             from,
             peak: 0.0,
@@ -151,8 +156,15 @@ impl Detector {
                 last_onset: None,
                 open: None,
                 events: Vec::new(),
+                maxima: None,
             },
         }
+    }
+
+    /// The same, which also keeps all maxima of the stress.
+    pub fn with_maxima(mut self) -> Self {
+        self.log.maxima = Some(Vec::new());
+        self
     }
 
     /// A stretch begins, at this state and these slips: where V_H jumps, an event may begin or end there.
@@ -213,9 +225,9 @@ impl Detector {
         }
     }
 
-    /// All events found.
-    pub fn into_events(self) -> Vec<SlipEvent> {
-        self.log.events
+    /// All events found, and all maxima of the stress that were kept.
+    pub fn into_found(self) -> (Vec<SlipEvent>, Vec<(f64, f64)>) {
+        (self.log.events, self.log.maxima.unwrap_or_default())
     }
 }
 

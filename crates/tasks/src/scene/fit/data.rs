@@ -6,6 +6,7 @@ use super::sizes;
 use super::table::Table;
 use super::unit::factor;
 use crate::scene::words::Kind;
+use std::path::Path;
 use twinslip::error::{Error, Result};
 use twinslip::friction::positive;
 
@@ -81,16 +82,12 @@ pub struct Measured {
 }
 
 impl Measured {
-    /// Reads the file that the options name.
+    /// Reads a file that the options name.
     ///
     /// # Errors
     /// [`Error::File`]; [`Error::Input`] for what is no record: columns that are not there, numbers that are none, times that run back,
     /// gaps, too few samples.
-    pub fn read(options: &FitOptions) -> Result<Self> {
-        let path = options
-            .data
-            .as_deref()
-            .ok_or_else(|| Error::Input("`data`: the file of the record is missing".into()))?;
+    pub fn read(path: &Path, options: &FitOptions) -> Result<Self> {
         let table = Table::read(path)?;
         let mut taken = Vec::new();
         let mut find = |asked: &Option<String>, option: &str, names: &[&str], others: &[&str]| {

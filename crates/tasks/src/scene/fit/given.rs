@@ -1,6 +1,7 @@
 //! What is given of a fit's parameters: values, and ranges.
 
 use super::options::FitOptions;
+use super::plan::Recording;
 use super::unit::GivenStiffness;
 use crate::scene::set::assignments;
 use twinslip::error::{Error, Result};
@@ -17,20 +18,31 @@ pub(super) struct Given {
     values: Vec<(String, f64)>,
     /// Slip lengths are looked for between these, in m.
     lengths: (f64, f64),
+    /// Whether the stiffness was given in Pa/m.
+    is_of_stress: bool,
 }
 
 impl Given {
-    /// `moved` is how far the load point moves in all, and on average between two samples, in m.
-    pub fn new(
-        options: &FitOptions,
-        normal_stress: Option<f64>,
-        (moved, spacing): (f64, f64),
-    ) -> Result<Self> {
+    /// Of these records; the stiffness as that of the first.
+    pub fn new(options: &FitOptions, recordings: &[Recording]) -> Result<Self> {
+        // How far the load point moves in all, and on average between two samples, in m.
+        let lengths = recordings.iter().map(|Recording { record, .. }| {
+            let moved = record.displacement.iter();
+            let moved = moved.fold(0.0, |most: f64, x| most.max(x.abs()));
+            (moved, moved / record.times.len() as f64)
+        });
+        let none = (0.0_f64, f64::INFINITY);
+        let (moved, spacing) = lengths.fold(none, |all, one| (all.0.max(one.0), all.1.min(one.1)));
+        let normal_stress = recordings[0].measured.normal_stress;
+        let mut is_of_stress = false;
         let stiffness = match &options.stiffness {
             None => None,
             Some(text) => Some(match (GivenStiffness::read(text)?, normal_stress) {
                 (GivenStiffness::OfFriction(k), _) => k,
-                (GivenStiffness::OfStress(k), Some(sigma)) => k / sigma,
+                (GivenStiffness::OfStress(k), Some(sigma)) => {
+                    is_of_stress = true;
+                    k / sigma
+                }
                 (GivenStiffness::OfStress(_), None) => {
                     return Err(Error::Input(
                         "`stiffness` in Pa/m needs the `normal_stress`; or give it as friction per length, such as 0.003/um".into(),
@@ -64,7 +76,19 @@ impl Given {
             values: given,
             // Over a shorter length friction decays between two samples.
             lengths: (spacing, LONGEST * moved),
+            is_of_stress,
         })
+    }
+
+    /// By what the stiffness that was given is multiplied for each record.
+    pub fn softer(&self, recordings: &[Recording]) -> Vec<f64> {
+        let first = recordings[0].measured.normal_stress;
+        let each = recordings.iter().map(|own| {
+            let pair = first.zip(own.measured.normal_stress);
+            pair.filter(|_| self.is_of_stress)
+                .map_or(1.0, |(first, own)| first / own)
+        });
+        each.collect()
     }
 
     /// Those of a law's parameters.

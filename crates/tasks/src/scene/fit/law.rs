@@ -2,11 +2,11 @@
 
 use super::given::{Given, bounds, unknown_bounds};
 use super::options::{FitOptions, USUALLY_FREE};
-use super::plan::{FitPlan, WithProblem};
+use super::plan::{FitPlan, Piece, Recording, WithProblem};
 use crate::scene::text::TextSlider;
 use std::path::Path;
 use twinslip::error::{Error, Result, did_you_mean};
-use twinslip::fit::{DRIFT, Fit, FreeParameter, Guess, Motion, Problem, Record, Scale, Sliders};
+use twinslip::fit::{DRIFT, Fit, FittedRecord, FreeParameter, Guess, Problem, Scale, Sliders};
 use twinslip::friction::{AnyLaw, Law};
 use twinslip::model::Slider;
 
@@ -28,7 +28,11 @@ pub struct LawToFit {
     /// The names of all parameters, and their values: where they are fixed, and where one was given for the search to begin with.
     values: Vec<(&'static str, Option<f64>)>,
     free: Vec<FreeParameter>,
+    /// Of several records, which of these each has its own of.
+    each: Vec<String>,
     drift: f64,
+    /// By what a stiffness that is given is multiplied for each recording: in Pa/m it is another friction per metre under another normal stress.
+    softer: Vec<f64>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -50,7 +54,7 @@ impl WithProblem for SteadyBand<'_> {
         const SIDE: f64 = 1.96;
         let errors = self.fit.standard_errors();
         let of = |&v: &f64| {
-            let (mu, slopes) = problem.steady(&self.fit.variables, v / self.reference_rate)?;
+            let (mu, slopes) = problem.steady(0, &self.fit.variables, v / self.reference_rate)?;
             let each: Vec<f64> = slopes.iter().zip(&errors).map(|(s, e)| s * e).collect();
             let pairs = (0..each.len()).flat_map(|i| (0..each.len()).map(move |j| (i, j)));
             let variance: f64 = pairs
@@ -67,10 +71,10 @@ impl LawToFit {
     pub(super) fn new(
         name: &str,
         options: &FitOptions,
-        given: &Given,
-        shown: &[Guess],
+        recordings: &[Recording],
         reference_rate: f64,
     ) -> Result<Self> {
+        let given = &Given::new(options, recordings)?;
         let states = options.states;
         if !(1..=2).contains(&states) {
             return Err(Error::parameter("states", states, "1 or 2"));
@@ -98,6 +102,7 @@ impl LawToFit {
             Model::Text(_) => has.clone(),
         };
         let all_given = given;
+        let softer = given.softer(recordings);
         let given = given.of(&has, &label, !options.law.contains(','))?;
         let usual: String = match states {
             2 => format!("{USUALLY_FREE},evolution_effect_2,slip_length_2"),
@@ -158,6 +163,7 @@ impl LawToFit {
                 name,
                 scale,
                 bounds,
+                of_record: None,
             });
         }
         if free.is_empty() {
@@ -165,6 +171,8 @@ impl LawToFit {
         }
         unknown_bounds(options, &free)?;
         let law = LawToFit {
+            each: each(options, &free)?,
+            softer,
             name: label,
             states,
             model,
@@ -172,7 +180,9 @@ impl LawToFit {
             free,
             drift: options.drift.unwrap_or(0.0),
         };
-        if law.starts(shown, reference_rate).is_empty() {
+        law.check_stiffness(recordings)?;
+        let shows_none = |own: &Recording| law.starts(&own.shown, reference_rate).is_empty();
+        if recordings.iter().any(shows_none) {
             return Err(Error::Input(format!(
                 "the record has neither a step nor a hold from which to estimate starting values: give values of {}, and list in `free` all that is fitted",
                 law.free
@@ -191,7 +201,7 @@ impl LawToFit {
         &self.free
     }
 
-    fn value(&self, name: &str) -> Option<f64> {
+    pub(super) fn value(&self, name: &str) -> Option<f64> {
         let known = self.values.iter().find(|(own, _)| *own == name);
         known.and_then(|(_, value)| *value)
     }
@@ -280,6 +290,51 @@ impl LawToFit {
         starts
     }
 
+    /// Which parameters each of several records has its own of.
+    pub fn each(&self) -> &[String] {
+        &self.each
+    }
+
+    /// # Errors
+    /// [`Error::Input`] for one stiffness, in friction per metre, of records under different normal stresses.
+    fn check_stiffness(&self, recordings: &[Recording]) -> Result<()> {
+        /// Normal stresses that differ by less are one.
+        const SAME: f64 = 1e-2;
+        let name = "stiffness";
+        let is_shared = recordings.len() > 1
+            && self.free.iter().any(|free| free.name == name)
+            && !self.each.iter().any(|own| own == name);
+        let stresses = recordings
+            .iter()
+            .filter_map(|own| own.measured.normal_stress);
+        let (low, high) = stresses.fold((f64::INFINITY, 0.0_f64), |(low, high), one| {
+            (low.min(one), high.max(one))
+        });
+        if is_shared && high > low * (1.0 + SAME) {
+            return Err(Error::Input(format!(
+                "`each` has no stiffness, but the records' normal stresses are {low} to {high} Pa: one stiffness is another friction per length in each"
+            )));
+        }
+        Ok(())
+    }
+
+    /// What is looked for in so many records: what they share, then what each has its own of.
+    pub(super) fn free_of(&self, records: usize) -> Vec<FreeParameter> {
+        let is_own = |free: &&FreeParameter| self.each.contains(&free.name);
+        if records == 1 {
+            return self.free.clone();
+        }
+        let shared = self.free.iter().filter(|free| !is_own(free)).cloned();
+        let own = (0..records).flat_map(|at| {
+            let all = self.free.iter().filter(is_own);
+            all.map(move |free| FreeParameter {
+                of_record: Some(at),
+                ..free.clone()
+            })
+        });
+        shared.chain(own).collect()
+    }
+
     /// The steady friction coefficient at these slip rates in m/s, and the ends of its 95 % band.
     ///
     /// # Errors
@@ -290,43 +345,78 @@ impl LawToFit {
             rates,
             reference_rate: plan.reference_rate,
         };
-        self.with_problem(plan, (&plan.motion, &plan.record), &mut band)
+        self.with_problem(plan, &plan.pieces(), &mut band)
     }
 
-    /// Does something with the problem of this law.
+    /// Does something with the problem of this law and some records.
     ///
     /// # Errors
     /// Its own.
     pub fn with_problem<W: WithProblem>(
         &self,
         plan: &FitPlan,
-        (motion, record): (&Motion, &Record),
+        pieces: &[Piece<'_>],
         what: &mut W,
     ) -> Result<W::Output> {
-        let parts = (plan, motion, record);
         match &self.model {
             Model::BuiltIn(slider) if self.states == 2 => {
-                what.call(&self.problem::<4>(slider, parts))
+                what.call(&self.problem::<4>(slider, plan, pieces))
             }
-            Model::BuiltIn(slider) => what.call(&self.problem::<3>(slider, parts)),
-            Model::Text(slider) => what.call(&self.problem::<3>(&**slider, parts)),
+            Model::BuiltIn(slider) => what.call(&self.problem::<3>(slider, plan, pieces)),
+            Model::Text(slider) => what.call(&self.problem::<3>(&**slider, plan, pieces)),
         }
     }
 
     fn problem<'a, const N: usize>(
         &'a self,
         sliders: &'a dyn Sliders<N>,
-        (plan, motion, record): (&'a FitPlan, &'a Motion, &'a Record),
+        plan: &FitPlan,
+        pieces: &[Piece<'a>],
     ) -> Problem<'a, N> {
+        let names = self.values.iter().map(|(name, _)| *name);
+        let parameters = |of: usize| {
+            let all = names.clone().zip(self.parameters(plan.reference_rate));
+            let own = all.map(|(name, value)| match name {
+                "stiffness" => value * self.softer[of],
+                _ => value,
+            });
+            own.collect()
+        };
+        let records = pieces.iter().map(|piece| FittedRecord {
+            record: piece.record,
+            motion: piece.motion,
+            parameters: parameters(piece.of),
+            drift: self.drift,
+        });
         Problem {
             sliders,
-            motion,
-            record,
-            parameters: self.parameters(plan.reference_rate),
-            drift: self.drift,
-            free: self.free.clone(),
+            records: records.collect(),
+            free: self.free_of(pieces.len()),
             loss: plan.loss,
         }
+    }
+}
+
+/// Which of the parameters that are fitted each of several records has its own of.
+fn each(options: &FitOptions, free: &[FreeParameter]) -> Result<Vec<String>> {
+    /// Of the apparatus, and what differs from sample to sample.
+    const USUALLY: [&str; 3] = ["stiffness", "reference_friction", DRIFT];
+    let is_free = |name: &String| free.iter().any(|free| free.name == *name);
+    let Some(asked) = &options.each else {
+        let usual = USUALLY.into_iter().map(String::from);
+        return Ok(usual.filter(is_free).collect());
+    };
+    let names = asked.split(',').map(|name| name.trim().replace('-', "_"));
+    let names: Vec<String> = names.filter(|name| !name.is_empty()).collect();
+    match names.iter().find(|name| !is_free(name)) {
+        Some(name) => {
+            let known: Vec<&str> = free.iter().map(|free| free.name.as_str()).collect();
+            Err(Error::Input(format!(
+                "`each` {name}: it is not fitted; what is fitted is {}",
+                known.join(", ")
+            )))
+        }
+        None => Ok(names),
     }
 }
 

@@ -11,9 +11,10 @@ pub(super) const USUALLY_FREE: &str =
 /// `fit`: friction parameters from a record of velocity steps. All in SI, whatever the units of the file are.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct FitOptions {
-    /// The record: CSV, TSV or columns of text, with or without a header; units in its parentheses, such as Displ(um)
+    /// The record: CSV, TSV or columns of text, with or without a header; units in its parentheses, such as Displ(um). Several records are
+    /// fitted together
     #[arg(value_name = "DATA", id = "data")]
-    pub data: Option<PathBuf>,
+    pub data: Vec<PathBuf>,
 
     /// Laws to fit, comma-separated: spinodal, bounded, regularised-ageing, dieterich-ruina (or ageing), slip, or FILE.toml; several laws
     /// are each compared with the best
@@ -27,6 +28,10 @@ pub struct FitOptions {
     /// direct_effect,evolution_effect,slip_length,stiffness,reference_friction, with --states 2 also evolution_effect_2,slip_length_2]
     #[arg(long, value_name = "NAMES", help_heading = "Model")]
     pub free: Option<String>,
+    /// Of several records, parameters that each has its own of, comma-separated; the others are shared [default: those of
+    /// stiffness,reference_friction,drift that are fitted]
+    #[arg(long, value_name = "NAMES", help_heading = "Model")]
+    pub each: Option<String>,
     /// Direct effect a: its value, or the start of the search
     #[arg(long, value_name = "a", value_parser = number, allow_negative_numbers = true, help_heading = "Model")]
     pub direct_effect: Option<f64>,
@@ -132,6 +137,21 @@ pub struct FitOptions {
     /// 95 % intervals: by profile, or linear from the standard errors, which is faster
     #[arg(long, value_name = "profile|linear", default_value = "profile", value_parser = Names::of(["profile", "linear"]), hide_possible_values = true, help_heading = "Fit")]
     pub intervals: String,
+    /// Also draw so many times from the posterior, by the No-U-Turn sampler in four chains
+    #[arg(long, value_name = "N", value_parser = count, help_heading = "Posterior")]
+    pub posterior: Option<usize>,
+    /// Prior of a parameter, NAME=normal:MEAN:DEVIATION, uniform:A:B or log-uniform:A:B; repeatable [default: wide ones, as the result says]
+    #[arg(
+        long,
+        value_name = "NAME=PRIOR",
+        value_delimiter = ',',
+        allow_hyphen_values = true,
+        help_heading = "Posterior"
+    )]
+    pub prior: Vec<String>,
+    /// Seed of the draws [default: 1]
+    #[arg(long, value_name = "N", help_heading = "Posterior")]
+    pub seed: Option<u64>,
     /// Recompute the derivatives at the minimum by sensitivities of CVODES, and report the largest difference
     #[arg(long, help_heading = "Fit")]
     pub crosscheck: bool,
@@ -142,12 +162,18 @@ pub struct FitOptions {
     /// Draw data, fit and residuals as FILE.svg or FILE.png
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub plot: Option<PathBuf>,
-    /// Draw the confidence ellipses of all pairs of parameters and their profiles
+    /// Draw the confidence ellipses of all pairs of parameters and their profiles, with --posterior the draws
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub plot_parameters: Option<PathBuf>,
     /// Draw the resulting steady-state law with its 95 % band
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub plot_law: Option<PathBuf>,
+    /// Draw healing and the friction at the end of holds against their duration
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub plot_holds: Option<PathBuf>,
+    /// Draw what each of several records says of the parameters that they share
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub plot_records: Option<PathBuf>,
     /// Write a page with all results, FILE.html
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub report: Option<PathBuf>,

@@ -72,6 +72,7 @@ pub fn run_many(plan: &ManyPlan, sink: &mut dyn Sink) -> Result<RunOutcome> {
     Ok(RunOutcome {
         last: watch.last,
         events: Vec::new(),
+        holds: Vec::new(),
         catalogue: watch.events.map(Into::into),
         work,
         errors: None,

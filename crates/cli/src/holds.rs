@@ -1,0 +1,129 @@
+//! Holds of a fit or of a run: as objects, and in lines.
+
+use serde_json::{Value, json};
+use twinslip::fit::{Estimate, Hold, Levels, healing_rate, holds_of};
+use twinslip_output::seven_digits;
+use twinslip_tasks::scene::{FitPlan, HoldOfRun};
+use twinslip_tasks::views::{in_digits, measured_healing};
+
+/// Whether the load point is held in any record.
+pub fn are_there(plan: &FitPlan) -> bool {
+    let mut each = plan.recordings.iter();
+    each.any(|own| !holds_of(&own.motion).is_empty())
+}
+
+/// `result.holds`; `several` with the number of the record.
+pub fn object(holds: &[Hold], several: bool) -> Value {
+    let each = holds.iter().map(|hold| {
+        let measured = |of: fn(&Levels<Estimate>) -> Estimate| hold.measured.as_ref().map(of);
+        let number = |one: Option<Estimate>| one.map(estimate);
+        let mut object = json!({
+            "start": hold.start,
+            "duration": hold.duration,
+            "minimum": number(measured(|one| one.minimum)),
+            "peak": number(measured(|one| one.peak)),
+            "healing": number(measured(|one| one.healing)),
+            "fitted": {
+                "minimum": estimate(hold.fitted.minimum),
+                "peak": estimate(hold.fitted.peak),
+                "healing": estimate(hold.fitted.healing),
+            },
+        });
+        if several {
+            object["record"] = json!(hold.record + 1);
+        }
+        object
+    });
+    each.collect()
+}
+
+fn estimate(one: Estimate) -> Value {
+    let uncertainty = Some(one.uncertainty).filter(|x| x.is_finite());
+    json!({ "value": one.value, "uncertainty": uncertainty })
+}
+
+/// `result.healing_rate`, per decade of the duration.
+pub fn rate(holds: &[Hold]) -> Value {
+    let fitted = holds
+        .iter()
+        .map(|hold| (hold.duration, hold.fitted.healing));
+    let mut object =
+        measured_healing(holds).map_or(json!({ "value": null, "uncertainty": null }), estimate);
+    object["fitted"] = json!(healing_rate(fitted).map(|one| one.value));
+    object
+}
+
+/// `result.holds` of a run: friction coefficients as in a fit, without errors of measurement, and stresses.
+pub fn of_run(holds: &[HoldOfRun]) -> Value {
+    let each = holds.iter().map(|hold| {
+        let (before, least) = hold.stress;
+        let healing = hold.peak.map(|peak| peak - before);
+        let friction = |stress: Option<f64>| {
+            let value = stress.zip(hold.friction).map(|(x, by)| x * by);
+            json!({ "value": value, "uncertainty": null })
+        };
+        json!({
+            "start": hold.start,
+            "duration": hold.duration,
+            "minimum": friction(Some(least)),
+            "peak": friction(hold.peak),
+            "healing": friction(healing),
+            "stress": { "before": before, "minimum": least, "peak": hold.peak, "healing": healing },
+        })
+    });
+    each.collect()
+}
+
+/// `result.healing_rate` of a run; its error is how far the holds are from a straight line.
+pub fn rate_of_run(holds: &[HoldOfRun]) -> Value {
+    let healing = holds.iter().filter_map(|hold| {
+        let value = (hold.peak? - hold.stress.0) * hold.friction?;
+        let exact = Estimate {
+            value,
+            uncertainty: 0.0,
+        };
+        Some((hold.duration, exact))
+    });
+    json!(healing_rate(healing).map(estimate))
+}
+
+/// In words, one a line.
+pub fn lines(holds: &[Hold], several: bool) -> Vec<String> {
+    let told = |one: Estimate| {
+        let digits = (one.value.abs() / one.uncertainty).log10().floor() + 2.0;
+        let digits = if digits.is_finite() {
+            digits.clamp(2.0, 15.0) as usize
+        } else {
+            5
+        };
+        format!(
+            "{} ± {}",
+            in_digits(one.value, digits),
+            in_digits(one.uncertainty, 2)
+        )
+    };
+    let each = holds.iter().map(|hold| {
+        let of = match several {
+            true => format!(" in record {}", hold.record + 1),
+            false => String::new(),
+        };
+        let seconds = seven_digits(hold.duration);
+        let begun = format!("hold of {seconds} s at {} s{of}", seven_digits(hold.start));
+        match &hold.measured {
+            Some(levels) => format!(
+                "{begun}: minimum {}, peak {}, healing {} (fitted {})",
+                told(levels.minimum),
+                told(levels.peak),
+                told(levels.healing),
+                in_digits(hold.fitted.healing.value, 4)
+            ),
+            None => format!(
+                "{begun}: no samples before it, at its end and at the peak; fitted healing {}",
+                told(hold.fitted.healing)
+            ),
+        }
+    });
+    let rate = measured_healing(holds);
+    each.chain(rate.map(|rate| format!("healing rate {} per decade", told(rate))))
+        .collect()
+}
