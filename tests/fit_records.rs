@@ -14,7 +14,7 @@ const TRUTH: [(&str, f64); 3] = [
 ];
 
 /// A step of velocity by a factor of ten of the slip law on a rigid apparatus, which is a closed form.
-fn samples() -> impl Iterator<Item = (f64, f64, f64)> {
+pub fn samples() -> impl Iterator<Item = (f64, f64, f64)> {
     let [(_, a), (_, b), (_, length)] = TRUTH;
     (0..400).map(move |i| {
         let t = 0.1 * f64::from(i);
@@ -38,7 +38,7 @@ fn written(header: &str, between: &str, cells: Cells) -> String {
     rows.fold(header.to_owned(), |text, row| text + &row + "\n")
 }
 
-fn fitted(path: &std::path::Path, options: &[&str]) -> Value {
+pub fn fitted(path: &std::path::Path, options: &[&str]) -> Value {
     let name = path.to_str().expect("a name");
     let mut words = vec!["fit", name, "--law=slip", "--intervals=linear"];
     words.extend(["--free=direct_effect,evolution_effect,slip_length,reference_friction"]);
@@ -50,7 +50,7 @@ fn fitted(path: &std::path::Path, options: &[&str]) -> Value {
     object["result"].clone()
 }
 
-fn is_the_truth(name: &str, result: &Value) {
+pub fn is_the_truth(name: &str, result: &Value) {
     let all = result["fit"]["parameters"].as_array().expect("a list");
     for (parameter, truth) in TRUTH {
         let own = all.iter().find(|one| one["name"] == parameter).expect("it");
@@ -59,11 +59,11 @@ fn is_the_truth(name: &str, result: &Value) {
     }
 }
 
-fn shown(values: &[f64]) -> Vec<String> {
+pub fn shown(values: &[f64]) -> Vec<String> {
     values.iter().map(f64::to_string).collect()
 }
 
-fn comma(values: &[f64]) -> Vec<String> {
+pub fn comma(values: &[f64]) -> Vec<String> {
     shown(values).iter().map(|x| x.replace('.', ",")).collect()
 }
 

@@ -9,7 +9,7 @@ use twinslip::friction::ExtremumKind;
 use twinslip::number::Uncertain;
 use twinslip_output::Format;
 use twinslip_tasks::scene::{
-    Column, LawCurve, LawOptions, LawPlan, LawPoint, Quantity, Together, Units,
+    Column, LawCurve, LawOptions, LawPlan, LawPoint, MeasuredFriction, Quantity, Together, Units,
 };
 use twinslip_tasks::views;
 
@@ -17,11 +17,13 @@ pub fn run(options: &LawOptions, call: &Call) -> Result<Ending> {
     let plan = LawPlan::new(options)?;
     let outputs = (&options.output, options.plot.as_deref());
     let report = report::begun(outputs, call, || plan.explain())?;
+    let compared = plan.compared()?;
     let (curves, failure) = plan.curves()?;
     if let Some(path) = &options.plot {
-        report.draw(path, &views::picture_of_law(plan.system().units(), &curves))?;
+        let units = plan.system().units();
+        report.draw(path, &views::picture_of_law(units, &curves, &plan.measured))?;
     }
-    let ending = write(&plan, &report, &curves, failure.as_ref())?;
+    let ending = write(&plan, &report, (&curves, &compared), failure.as_ref())?;
     failure.map_or(Ok(ending), Err)
 }
 
@@ -158,10 +160,47 @@ fn at_driving(
     curves.iter().filter_map(object).collect()
 }
 
+/// `result.data`: what was measured beside the law.
+fn data(compared: &[(MeasuredFriction, Option<f64>)], units: &Units) -> Value {
+    let each = compared.iter().map(|(one, law)| {
+        json!({
+            "rate": units.outward(Quantity::SlipRate, one.slip_rate),
+            "friction": one.friction,
+            "uncertainty": one.uncertainty,
+            "law": law,
+        })
+    });
+    each.collect()
+}
+
+/// How far the law is from what was measured, in words.
+fn compared_in_words(compared: &[(MeasuredFriction, Option<f64>)]) -> Option<String> {
+    let off = compared.iter();
+    let off: Vec<(f64, Option<f64>)> = off
+        .filter_map(|(one, law)| Some((one.friction - (*law)?, one.uncertainty)))
+        .collect();
+    let count = off.len() as f64;
+    let rms = (off.iter().map(|(off, _)| off * off).sum::<f64>() / count).sqrt();
+    let within = off
+        .iter()
+        .filter(|(off, error)| error.is_some_and(|error| off.abs() <= error));
+    let errors = off.iter().all(|(_, error)| error.is_some());
+    let within = match errors {
+        true => format!("; {} are within their uncertainty", within.count()),
+        false => String::new(),
+    };
+    (!off.is_empty()).then(|| {
+        format!(
+            "measured friction at {count} slip rates differs from the law by {} (root mean square){within}",
+            views::in_digits(rms, 3)
+        )
+    })
+}
+
 fn write(
     plan: &LawPlan,
     report: &Report<'_>,
-    curves: &[LawCurve],
+    (curves, compared): (&[LawCurve], &[(MeasuredFriction, Option<f64>)]),
     failure: Option<&Error>,
 ) -> Result<Ending> {
     let (system, together) = (plan.system(), plan.together);
@@ -187,6 +226,9 @@ fn write(
         let rows: Vec<Value> = points().map(object).collect();
         let work = json!({"evaluations": rows.len()});
         let mut result = landmarks.result(curves.len(), rows);
+        if !compared.is_empty() {
+            result["data"] = data(compared, units);
+        }
         if let Some(at_driving) = at_driving {
             result["at_driving"] = json!(at_driving);
         }
@@ -196,7 +238,8 @@ fn write(
         let bytes = report.envelope(system, json!({}), result, work, failure);
         return report.write(&bytes);
     }
-    let found = landmarks.lines();
+    let mut found = landmarks.lines();
+    found.extend(compared_in_words(compared));
     let mut remarks = report.remarks(system, &Value::Null);
     remarks.extend(found.iter().cloned());
     if let Some(at_driving) = at_driving {

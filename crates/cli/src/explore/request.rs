@@ -56,9 +56,10 @@ const INTO_THE_ANSWER: [&str; 3] = ["events", "participation", "plot"];
 /// Options of files whose content may be given.
 const CONTENTS: [&str; 4] = ["ensemble", "law", "program", "system"];
 /// Options that have no meaning in a request, or are decided by the server.
-pub const REFUSED: [&str; 11] = [
+pub const REFUSED: [&str; 12] = [
     "checkpoint",
     "checkpoint-steps",
+    "data",
     "explain",
     "force",
     "format",

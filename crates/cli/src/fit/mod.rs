@@ -1,9 +1,11 @@
 //! `twinslip fit`.
 
+mod look;
 mod object;
 mod page;
 mod posterior;
 mod records;
+mod sanity;
 mod steps;
 
 use super::Ending;
@@ -19,7 +21,8 @@ use twinslip::fit::{
 };
 use twinslip_output::{Format, plot};
 use twinslip_tasks::scene::{
-    Described, FitOptions, FitPlan, FittedRecords, LawToFit, Recording, Units, WithProblem,
+    Described, FitOptions, FitPlan, FittedRecords, LawToFit, Measured, Recording, Units,
+    WithProblem,
 };
 use twinslip_tasks::views::{self, FitRow};
 
@@ -57,6 +60,9 @@ pub fn run(options: &FitOptions, call: &Call) -> Result<Ending> {
         &options.plot_holds,
         &options.plot_records,
     ];
+    if options.look {
+        return look::run(options, call);
+    }
     let pictures: Vec<&Path> = pictures
         .into_iter()
         .flatten()
@@ -81,6 +87,9 @@ pub fn run(options: &FitOptions, call: &Call) -> Result<Ending> {
         return Err(Error::Input(
             "`plot_records`: there is one record, and none to compare it with".into(),
         ));
+    }
+    for own in &plan.recordings {
+        report.say(own.measured.taken_in_words());
     }
     if options.output.explain {
         call.say(plan.explain());
@@ -138,11 +147,16 @@ pub fn run(options: &FitOptions, call: &Call) -> Result<Ending> {
     if let Some(path) = &options.report {
         page::write(path, call, &plan, (&found, &steps), &rows)?;
     }
-    let result = object::result(&plan, &found, &steps);
+    let mut result = object::result(&plan, &found, &steps);
     let doubts = best.drawn.iter().flat_map(|one| &one.posterior.undecided);
     let mut undecided = best.fit().verdict.undecided.clone();
     undecided.extend(doubts.cloned());
     let mut lines = object::lines(&plan, &found, &steps);
+    let questions = sanity::questions(&plan, best.law, best.fit());
+    if let Some(notes) = result["notes"].as_array_mut() {
+        notes.extend(questions.iter().cloned().map(Value::String));
+    }
+    lines.extend(questions);
     let written = if report.format == Format::Table && options.output.format.is_none() {
         // A terminal shows what was found; thousands of rows beside it are for files, or for who asks for them.
         let result = std::mem::take(&mut lines).join("\n") + "\n";
@@ -299,31 +313,49 @@ pub struct About {
 
 impl About {
     fn new(plan: &FitPlan) -> Self {
-        let columns = |own: &Recording| {
-            let [time, displacement, friction, normal] = &own.measured.columns;
-            json!({
-                "time": time,
-                "displacement": displacement,
-                "friction": friction,
-                "normal_stress": normal,
-            })
-        };
-        let each = |of: &dyn Fn(&Recording) -> Value| match &plan.recordings[..] {
-            [one] => of(one),
-            all => all.iter().map(of).collect(),
-        };
         let names: Vec<&str> = plan.laws.iter().map(|law| law.name.as_str()).collect();
-        let echo = json!({
+        let law = json!({
             "law": names.join(","),
             "states": plan.laws[0].states,
             "reference_rate": plan.reference_rate,
-            "normal_stress": each(&|own| json!(own.measured.normal_stress)),
-            "samples": each(&|own| json!(own.record.times.len())),
-            "columns": each(&columns),
+        });
+        let mut echo = law.as_object().cloned().unwrap_or_default();
+        let mut each = plan
+            .recordings
+            .iter()
+            .map(|own| Self::of_record(&own.measured));
+        let Some(first) = each.next() else {
+            unreachable!("there is a record")
+        };
+        let rest: Vec<About> = each.collect();
+        for (name, value) in &first.echo {
+            let others = rest.iter().map(|one| one.echo[name].clone());
+            let value = match rest[..] {
+                [] => value.clone(),
+                _ => std::iter::once(value.clone()).chain(others).collect(),
+            };
+            echo.insert(name.clone(), value);
+        }
+        About { echo, ..first }
+    }
+
+    /// What is known of a record alone.
+    fn of_record(measured: &Measured) -> Self {
+        let [time, displacement, friction, normal] = &measured.columns;
+        let columns = json!({
+            "time": time,
+            "displacement": displacement,
+            "friction": friction,
+            "normal_stress": normal,
+        });
+        let echo = json!({
+            "normal_stress": measured.normal_stress,
+            "samples": measured.times.len(),
+            "columns": columns,
         });
         About {
             echo: echo.as_object().cloned().unwrap_or_default(),
-            units: plan.units(),
+            units: Units::measured(),
         }
     }
 }

@@ -181,6 +181,11 @@ fn sections() -> Vec<Section> {
             "One row for each sample.",
             described(&views::fit_columns(true)),
         ),
+        section(
+            "fit --look",
+            "One row for each stretch of one velocity; in JSON `result.look` has the columns of the record, its sampling, steps and holds.",
+            described(&views::look_columns()),
+        ),
     ]
 }
 

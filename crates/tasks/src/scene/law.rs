@@ -1,5 +1,6 @@
 //! The steady-state friction law from options: at which slip rates.
 
+use super::fit::{MeasuredFriction, measured_friction};
 use super::options::{LawOptions, ModelOptions};
 use super::system::{Described, System};
 use super::text::{TextModel, curve_of_formulas};
@@ -23,6 +24,8 @@ pub struct LawPlan {
     pub slip_rates: Vec<f64>,
     /// What slides together, where V_H or K is given.
     pub together: Option<Together>,
+    /// What was measured, where a file of that is given.
+    pub measured: Vec<MeasuredFriction>,
 }
 
 /// Whose laws they are.
@@ -123,7 +126,17 @@ impl LawPlan {
     pub fn new(options: &LawOptions) -> Result<Self> {
         let laws = Laws::of(&options.model)?;
         let units = *laws.described().units();
+        let measured = options.data.as_deref();
+        let measured = measured.map(|path| measured_friction(path, &units));
+        let measured = measured.transpose()?.unwrap_or_default();
+        if options.data.is_some() && laws.count() > 1 {
+            return Err(Error::Input(
+                "`data`: the two interfaces have laws of their own; compare one law at a time"
+                    .into(),
+            ));
+        }
         Ok(LawPlan {
+            measured,
             slip_rates: slip_rates(options, &units)?,
             together: Together::of(&options.model, &units)?,
             laws,
@@ -162,11 +175,7 @@ impl LawPlan {
         let mut curves = Vec::new();
         let together = self.together.and_then(|all| all.slip_rate);
         for i in 0..self.laws.count() {
-            let at = (&self.slip_rates[..], together);
-            let (curve, failure) = match &self.laws {
-                Laws::Closed(system) => (curve(system, i, at)?, None),
-                Laws::Formulas(model) => curve_of_formulas(model, i, at)?,
-            };
+            let (curve, failure) = self.laws.curve(i, (&self.slip_rates, together))?;
             curves.push(curve);
             if failure.is_some() {
                 return Ok((curves, failure));
@@ -174,9 +183,37 @@ impl LawPlan {
         }
         Ok((curves, None))
     }
+
+    /// What was measured, each beside the friction coefficient of the law at that rate; `None` where the law has no steady state.
+    ///
+    /// # Errors
+    /// Those of [`LawPlan::curves`]; [`Error::Input`] for a law whose friction coefficient is not known.
+    pub fn compared(&self) -> Result<Vec<(MeasuredFriction, Option<f64>)>> {
+        let rates: Vec<f64> = self.measured.iter().map(|one| one.slip_rate).collect();
+        if rates.is_empty() {
+            return Ok(Vec::new());
+        }
+        let (curve, _) = self.laws.curve(0, (&rates, None))?;
+        if curve.coefficient.is_none() {
+            return Err(Error::Input(
+                "`data`: this law has no friction coefficient to compare with, as it has no direct_effect".into(),
+            ));
+        }
+        let mut points = curve.points.iter().map(|point| point.friction);
+        let each = self.measured.iter();
+        Ok(each.map(|one| (*one, points.next().flatten())).collect())
+    }
 }
 
 impl Laws {
+    /// The law of an interface at rates that ascend, and at V_H/N; up to a rate at which it has no steady state, and why that is.
+    fn curve(&self, place: usize, at: (&[f64], Option<f64>)) -> Result<(LawCurve, Option<Error>)> {
+        match self {
+            Laws::Closed(system) => Ok((curve(system, place, at)?, None)),
+            Laws::Formulas(model) => curve_of_formulas(model, place, at),
+        }
+    }
+
     fn of(model: &ModelOptions) -> Result<Self> {
         let formulas = TextModel::of(model, &["driving", "stiffness"])?;
         Ok(match formulas.filter(|model| model.slab.is_some()) {

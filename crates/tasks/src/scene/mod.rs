@@ -83,8 +83,8 @@ pub use event::SlipEvent;
 pub use explain::{Keeping, explain};
 pub use file::SceneFile;
 pub use fit::{
-    FitOptions, FitPlan, FittedRecords, LawToFit, Measured, OwnRecord, Piece, Recording,
-    WithProblem,
+    FitOptions, FitPlan, FittedRecords, LawToFit, Look, LookStretch, Measured, MeasuredFriction,
+    OwnRecord, Piece, Recording, Role, TakenColumn, WithProblem,
 };
 pub use following::Following;
 pub use general::{

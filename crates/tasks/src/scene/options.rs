@@ -174,7 +174,10 @@ pub struct LawOptions {
     /// Number of slip rates, equally spaced in ln V
     #[arg(long, value_name = "N", value_parser = count, default_value_t = 200, help_heading = "Grid")]
     pub points: usize,
-    /// Draw tau_ss and k_c against V as FILE.svg or FILE.png
+    /// Measured friction to compare the law with: a table with columns of slip rate and friction coefficient and, if known, its uncertainty
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub data: Option<PathBuf>,
+    /// Draw tau_ss, with the measured friction, and k_c against V as FILE.svg or FILE.png
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub plot: Option<PathBuf>,
     /// Where results go.

@@ -137,6 +137,11 @@ impl Units {
         }
     }
 
+    /// SI for numbers that are in SI already, as those of measurements.
+    pub fn measured() -> Self {
+        Self::new(Scales::new(1.0, 1.0, 1.0, 1.0).ok(), false)
+    }
+
     /// Of a user-defined system: whatever its equations are in.
     pub fn none() -> Self {
         Units {

@@ -1,12 +1,16 @@
 //! The picture of a steady-state friction law.
 
 use super::diagram::axis_label;
-use crate::scene::{LawCurve, LawPoint, Quantity, Units};
+use crate::scene::{LawCurve, LawPoint, MeasuredFriction, Quantity, Units};
 use twinslip::friction::ExtremumKind;
-use twinslip_output::plot::{Axis, Drawing, Mark, Panel, PlotSeries, Side};
+use twinslip_output::plot::{Axis, Bars, Drawing, Key, Mark, Panel, PlotSeries, Side, Symbol};
 
-/// tau_ss, as a coefficient of friction where that is the same of all laws and known, and k_c against V.
-pub fn picture_of_law(units: &Units, curves: &[LawCurve]) -> Drawing {
+/// tau_ss, as a coefficient of friction where that is the same of all laws and known, with what was measured of it, and k_c against V.
+pub fn picture_of_law(
+    units: &Units,
+    curves: &[LawCurve],
+    measured: &[MeasuredFriction],
+) -> Drawing {
     let first = curves.first().and_then(|curve| curve.coefficient);
     let alike = curves.iter().all(|curve| curve.coefficient == first);
     let coefficient = first.filter(|_| alike);
@@ -57,7 +61,8 @@ pub fn picture_of_law(units: &Units, curves: &[LawCurve]) -> Drawing {
     });
     let friction = Panel {
         series: lines(&|at| stress(at.stress.value)),
-        marks: marks.collect(),
+        marks: measured_marks(units, measured).chain(marks).collect(),
+        keys: measured.first().map(measured_key).into_iter().collect(),
         ..Panel::new("steady-state friction", x.clone(), Axis::linear(friction))
     };
     let tops = numbered().filter_map(|(i, curve)| {
@@ -78,6 +83,34 @@ pub fn picture_of_law(units: &Units, curves: &[LawCurve]) -> Drawing {
         ..Panel::new(title, x, Axis::linear(critical))
     };
     Drawing::columns(vec![vec![friction, stiffness]])
+}
+
+/// The colour of what was measured.
+const MEASURED: usize = 4;
+
+/// What was measured, each with its uncertainty as a bar.
+fn measured_marks(units: &Units, measured: &[MeasuredFriction]) -> impl Iterator<Item = Mark> {
+    measured.iter().map(|one| {
+        let rate = units.outward(Quantity::SlipRate, one.slip_rate);
+        let ends = |error: f64| (one.friction - error, one.friction + error);
+        let mark = Mark::new(rate, one.friction, "").symbol(Symbol::Dot);
+        Mark {
+            bars: Bars {
+                x: None,
+                y: one.uncertainty.map(ends),
+            },
+            ..mark.colour(MEASURED)
+        }
+    })
+}
+
+fn measured_key(_: &MeasuredFriction) -> Key {
+    Key {
+        symbol: Symbol::Dot,
+        filled: true,
+        colour: Some(MEASURED),
+        label: "measured".into(),
+    }
 }
 
 /// Down to zero: where a law strengthens with velocity k_c is negative, which only says that every stiffness is stable. Curves that are

@@ -1,10 +1,10 @@
 //! From a laboratory's file to a record: which columns, in which units, which window.
 
-use super::heading::Heading;
+use super::columns::Columns;
 use super::options::FitOptions;
+use super::roles::Role;
 use super::sizes;
 use super::table::Table;
-use super::unit::factor;
 use crate::scene::words::Kind;
 use std::path::Path;
 use twinslip::error::{Error, Result};
@@ -14,49 +14,6 @@ use twinslip::friction::positive;
 const FEWEST: usize = 20;
 /// A sample that comes so many times later than its neighbours do is behind a gap.
 const GAP: f64 = 50.0;
-
-const TIMES: &[&str] = &["time", "t", "elapsed", "times"];
-const DISPLACEMENTS: &[&str] = &[
-    "displacement",
-    "displ",
-    "disp",
-    "loadpoint",
-    "loadpointdisplacement",
-    "lp",
-    "position",
-    "shearslip",
-    "x",
-];
-/// In names of what moves across the fault.
-const ACROSS: &[&str] = &["normal", "vertical", "horizontal", "dilat", "compaction"];
-const FRICTIONS: &[&str] = &[
-    "friction",
-    "mu",
-    "frictioncoefficient",
-    "coefficient",
-    "μ",
-    "shearnormal",
-    "shearstress",
-    "tau",
-];
-const NORMAL_STRESSES: &[&str] = &[
-    "effectivenormalstress",
-    "effnormalstress",
-    "normalstress",
-    "normal",
-    "sigman",
-    "sigma",
-];
-
-/// Whether a name is one of those that columns are found by.
-pub(super) fn is_known(heading: &Heading) -> bool {
-    let all = [TIMES, DISPLACEMENTS, FRICTIONS, NORMAL_STRESSES].concat();
-    let known = |own: &String| {
-        let same = |name: &&str| own == name || name.len() > 2 && own.contains(name);
-        all.iter().any(same)
-    };
-    heading.plain_names().iter().any(known)
-}
 
 /// What was measured, in SI.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,10 +32,27 @@ pub struct Measured {
     pub file: String,
     /// The names of the columns that were taken: time, displacement, friction, normal stress.
     pub columns: [Option<String>; 4],
+    /// What each of the columns was taken to be.
+    pub taken: Vec<TakenColumn>,
+    /// The columns that were not.
+    pub left: Vec<String>,
     /// What was made of the columns that a user may not have meant, a sentence each.
     pub notes: Vec<String>,
     /// The columns of the file, in words.
     pub seen: String,
+    /// From when to when there are no samples, in s: none in a record that is fitted.
+    pub gaps: Vec<(f64, f64)>,
+}
+
+/// A column of a file, and what it was taken to be.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TakenColumn {
+    /// Its name.
+    pub name: String,
+    /// What it was taken to measure.
+    pub role: Role,
+    /// The unit that its numbers were taken in, as it was written; none where it states none.
+    pub unit: Option<String>,
 }
 
 impl Measured {
@@ -88,78 +62,45 @@ impl Measured {
     /// [`Error::File`]; [`Error::Input`] for what is no record: columns that are not there, numbers that are none, times that run back,
     /// gaps, too few samples.
     pub fn read(path: &Path, options: &FitOptions) -> Result<Self> {
+        let measured = Self::with_gaps(path, options, options.program.is_none())?;
+        match measured.gaps.first() {
+            None => Ok(measured),
+            Some((from, to)) => Err(Error::Input(format!(
+                "{}: a gap of {} s after {from} s, more than {GAP:.0} times as long as its neighbours; give a window on one side of it by `from` and `to`",
+                measured.file,
+                to - from
+            ))),
+        }
+    }
+
+    /// The same where a record may have gaps; `moves` is whether a displacement must be known where several columns may be it.
+    ///
+    /// # Errors
+    /// Those of [`Measured::read`] but for gaps.
+    pub(super) fn with_gaps(path: &Path, options: &FitOptions, moves: bool) -> Result<Self> {
         let table = Table::read(path)?;
-        let mut taken = Vec::new();
-        let mut find = |asked: &Option<String>, option: &str, names: &[&str], others: &[&str]| {
-            let found = match asked {
-                Some(column) => Some(table.asked(option, column)?),
-                None => table.like(names, others, &taken),
-            };
-            taken.extend(found);
-            Ok::<_, Error>(found)
-        };
-        let time = find(&options.time, "time", TIMES, &[])?;
-        // Before the normal stress: `shear/normal` has both names.
-        let friction = find(&options.friction, "friction", FRICTIONS, &[])?;
-        let asked = &options.displacement;
-        let displacement = find(asked, "displacement", DISPLACEMENTS, ACROSS)?;
-        let asked = &options.normal_stress_column;
-        let others = ["displ", "disp", "strain"];
-        let normal = find(asked, "normal_stress_column", NORMAL_STRESSES, &others)?;
-        let needed = |place: Option<usize>, option: &str| {
-            place.ok_or_else(|| {
-                Error::Input(format!(
-                    "{}: which column is the {option}? {}; say so by `{option}`",
-                    table.file,
-                    table.seen()
-                ))
-            })
-        };
-        let (time, friction) = (needed(time, "time")?, needed(friction, "friction")?);
-        // A unit that is asked for holds over that of the header.
-        let asked_unit = |place: usize| {
-            let asked = [
-                (Some(time), &options.time),
-                (displacement, &options.displacement),
-                (Some(friction), &options.friction),
-                (normal, &options.normal_stress_column),
-            ];
-            let mut own = asked.into_iter().filter(|(at, _)| *at == Some(place));
-            own.find_map(|(_, text)| Heading::of(text.as_deref()?).unit)
-        };
-        let unit = |place: usize, kind: Kind| -> Result<Option<f64>> {
-            let heading = table.headings.get(place);
-            let name = heading.map_or("", |one| &one.name);
-            let explicit = asked_unit(place).or(heading.and_then(|one| one.unit.clone()));
-            if explicit.is_some() {
-                return factor(kind, explicit.as_deref(), name).map(Some);
-            }
-            let suffix = heading.and_then(Heading::stated);
-            Ok(suffix.and_then(|unit| factor(kind, Some(unit), name).ok()))
-        };
-        let column = |place: usize, what: &str, kind: Kind| -> Result<Vec<f64>> {
-            let size = unit(place, kind)?.unwrap_or(1.0);
-            let numbers = table.numbers(place, what)?;
-            Ok(numbers.into_iter().map(|x| x * size).collect())
-        };
-        let times = column(time, "time", Kind::Time)?;
+        let columns = Columns::of(options, &table, moves)?;
+        let mut notes = columns.notes.clone();
+        let times = columns.times(&table)?;
         ascend(&table, &times)?;
         let rows = window(options, &table, &times)?;
         let cut = |all: Vec<f64>| -> Vec<f64> { rows.iter().map(|&row| all[row]).collect() };
         let mean = |all: &Vec<f64>| all.iter().sum::<f64>() / all.len() as f64;
-        let name = |place: usize| {
-            let heading = table.headings.get(place);
-            heading.map_or((place + 1).to_string(), |one| one.name.clone())
-        };
-        let mut notes = Vec::new();
+        let of =
+            |place: usize, what: &str, kind: Kind| columns.numbers(&table, (place, what, kind));
         let given = options.normal_stress;
         let given = given.map(|x| positive("normal-stress", x)).transpose()?;
-        let of_shear = unit(friction, Kind::Stress).ok().flatten();
-        let normal_stress = match normal {
+        let friction = columns.friction;
+        let of_shear = columns.unit(&table, friction, Kind::Stress).ok().flatten();
+        let normal_stress = match columns.normal_stress {
             Some(place) => {
-                let mut values = cut(column(place, "normal stress", Kind::Stress)?);
-                let own = format!("{}: the normal stress, column {}", table.file, name(place));
-                let is_stated = unit(place, Kind::Stress)?.is_some();
+                let mut values = cut(of(place, "normal stress", Kind::Stress)?);
+                let own = format!(
+                    "{}: the normal stress, column {}",
+                    table.file,
+                    table.name(place)
+                );
+                let is_stated = columns.unit(&table, place, Kind::Stress)?.is_some();
                 match of_shear.filter(|_| !is_stated) {
                     Some(factor) => {
                         values.iter_mut().for_each(|sigma| *sigma *= factor);
@@ -177,53 +118,113 @@ impl Measured {
             None => None,
         };
         let friction_values = if of_shear.is_some() {
-            let shear = cut(column(friction, "shear stress", Kind::Stress)?);
-            let by = |i: usize| {
-                match (given, &normal_stress) {
-                (Some(sigma), _) => Ok(sigma),
-                (None, Some(column)) => Ok(column[i]),
-                (None, None) => Err(Error::Input(
-                    "`friction` is a stress: give the `normal_stress`, or the `normal_stress_column`"
-                        .into(),
-                )),
-            }
-            };
-            let ratios = shear.iter().enumerate();
-            ratios
-                .map(|(i, tau)| Ok(tau / by(i)?))
-                .collect::<Result<_>>()?
+            let shear = cut(of(friction, "shear stress", Kind::Stress)?);
+            ratios(shear, given, normal_stress.as_deref(), |i| {
+                format!("{}:{}", table.file, table.line(rows[i]))
+            })?
         } else {
-            cut(column(friction, "friction", Kind::Number)?)
+            cut(of(friction, "friction", Kind::Number)?)
         };
         let weights = match &options.weights {
             None => vec![1.0; rows.len()],
             Some(name) => normalised(cut(table.numbers(table.asked("weights", name)?, "weight")?))?,
         };
         let line = |i: usize| format!("{}:{}", table.file, table.line(rows[i]));
-        sizes::friction(&friction_values, &name(friction), line)?;
+        sizes::friction(&friction_values, &table.name(friction), line)?;
         let times = cut(times);
-        let displacement_values = match displacement {
-            None => None,
-            Some(place) => {
-                let mut moved = cut(column(place, "displacement", Kind::Length)?);
-                let is_stated = unit(place, Kind::Length)?.is_some();
-                let own = format!("{}: the displacement, column {}", table.file, name(place));
+        let displacement = match (columns.displacement, columns.velocity) {
+            (None, None) => None,
+            (Some(place), _) => {
+                let mut moved = cut(of(place, "displacement", Kind::Length)?);
+                let is_stated = columns.unit(&table, place, Kind::Length)?.is_some();
+                let own = format!(
+                    "{}: the displacement, column {}",
+                    table.file,
+                    table.name(place)
+                );
+                notes.extend(sizes::displacement(&times, &mut moved, &own, is_stated)?);
+                Some(moved)
+            }
+            (None, Some(place)) => {
+                let velocities = cut(of(place, "velocity", Kind::Velocity)?);
+                let is_stated = columns.unit(&table, place, Kind::Velocity)?.is_some();
+                let own = format!("{}: the velocity, column {}", table.file, table.name(place));
+                let mut moved = integrated(&times, &velocities);
+                notes.push(format!("{own}, is integrated, as there is no displacement"));
                 notes.extend(sizes::displacement(&times, &mut moved, &own, is_stated)?);
                 Some(moved)
             }
         };
+        let name = |place: usize| table.name(place);
         Ok(Measured {
             file: table.file.clone(),
-            displacement: displacement_values,
+            displacement,
             friction: friction_values,
             weights,
             normal_stress: given.or_else(|| normal_stress.as_ref().map(mean)),
-            columns: [Some(time), displacement, Some(friction), normal].map(|one| one.map(name)),
+            columns: [
+                Some(columns.time),
+                columns.displacement,
+                Some(friction),
+                columns.normal_stress,
+            ]
+            .map(|one| one.map(name)),
+            taken: columns.taken(&table),
+            left: columns.left(&table),
+            gaps: gaps(&times),
             times,
             notes,
             seen: table.seen(),
         })
     }
+
+    /// What the columns were taken to be, in one sentence.
+    pub fn taken_in_words(&self) -> String {
+        let unit = |one: &TakenColumn| match &one.unit {
+            Some(unit) => format!(" [{unit}]"),
+            None => String::new(),
+        };
+        let each = self.taken.iter();
+        let each: Vec<String> = each
+            .map(|one| format!("{} from {:?}{}", one.role.name(), one.name, unit(one)))
+            .collect();
+        format!("{}: {}", self.file, each.join(", "))
+    }
+}
+
+/// Shear stress over normal stress; `line` says where a sample is.
+fn ratios(
+    shear: Vec<f64>,
+    given: Option<f64>,
+    normal: Option<&[f64]>,
+    line: impl Fn(usize) -> String,
+) -> Result<Vec<f64>> {
+    let over = |(i, tau): (usize, f64)| {
+        let sigma = given.or(normal.map(|all| all[i])).ok_or_else(|| {
+            Error::Input(
+                "`friction` is a stress: give the `normal_stress`, or the `normal_stress_column`"
+                    .into(),
+            )
+        })?;
+        match sigma > 0.0 {
+            true => Ok(tau / sigma),
+            false => Err(Error::Input(format!(
+                "{}: the normal stress {sigma} Pa must be positive, as the shear stress is divided by it",
+                line(i)
+            ))),
+        }
+    };
+    shear.into_iter().enumerate().map(over).collect()
+}
+
+/// How far a load point of these velocities has gone.
+fn integrated(times: &[f64], velocities: &[f64]) -> Vec<f64> {
+    let mut gone = vec![0.0; times.len()];
+    for i in 1..times.len() {
+        let mean = 0.5 * (velocities[i - 1] + velocities[i]);
+        gone[i] = gone[i - 1] + mean * (times[i] - times[i - 1]);
+    }
+    gone
 }
 
 /// # Errors
@@ -243,7 +244,7 @@ fn ascend(table: &Table, times: &[f64]) -> Result<()> {
     Ok(())
 }
 
-/// The rows of the window, thinned, without gaps.
+/// The rows of the window, thinned.
 fn window(options: &FitOptions, table: &Table, times: &[f64]) -> Result<Vec<usize>> {
     if options.decimate == 0 {
         return Err(Error::parameter("decimate", 0, "at least 1"));
@@ -261,20 +262,16 @@ fn window(options: &FitOptions, table: &Table, times: &[f64]) -> Result<Vec<usiz
             table.len()
         )));
     }
-    let spacing = |i: usize| times[rows[i + 1]] - times[rows[i]];
-    for i in 1..rows.len().saturating_sub(2) {
-        let usual = f64::max(spacing(i - 1), spacing(i + 1));
-        if spacing(i) > GAP * usual {
-            return Err(Error::Input(format!(
-                "{}:{}: a gap of {} s before this row, {:.0} times as long as its neighbours; give a window on one side of it by `from` and `to`",
-                table.file,
-                table.line(rows[i + 1]),
-                spacing(i),
-                spacing(i) / usual
-            )));
-        }
-    }
     Ok(rows)
+}
+
+/// From when to when there are no samples.
+fn gaps(times: &[f64]) -> Vec<(f64, f64)> {
+    let spacing = |i: usize| times[i + 1] - times[i];
+    let inner = 1..times.len().saturating_sub(2);
+    let is_gap = |&i: &usize| spacing(i) > GAP * f64::max(spacing(i - 1), spacing(i + 1));
+    let found = inner.filter(is_gap);
+    found.map(|i| (times[i], times[i + 1])).collect()
 }
 
 /// # Errors

@@ -1,7 +1,7 @@
 //! The head of a laboratory's file: the names of its columns, and their units.
 
 use super::cells::Separator;
-use super::data::is_known;
+use super::roles::{is_known, is_name};
 use super::unit::is_unit;
 
 /// A column as its header has it.
@@ -16,21 +16,37 @@ pub(super) struct Heading {
 }
 
 impl Heading {
-    /// `Displ(microns)`, `Time [s]`, `shear_stress_MPa`, `friction`.
+    /// `Displ(microns)`, `Time [s]`, `Shear stress (tau) [MPa]`, `shear_stress_MPa`, `friction`.
     pub fn of(text: &str) -> Self {
-        let (name, unit) = match text.find(['(', '[']) {
-            Some(at) if at > 0 => {
-                let unit = text[at + 1..].trim_end_matches([')', ']']).trim();
-                (&text[..at], Some(unit.to_owned()).filter(|u| !u.is_empty()))
-            }
-            _ => (text, None),
+        let (name, behind) = match text.find(['(', '[']) {
+            Some(at) if at > 0 => text.split_at(at),
+            _ => (text, ""),
         };
-        let name = name.trim().trim_end_matches('_').to_owned();
-        let parts = name.rsplit_once(['_', ' ', ',', '/', '-', '.']);
-        let suffix = parts
-            .filter(|(stem, unit)| !stem.is_empty() && is_unit(unit))
-            .map(|(stem, unit)| (stem.trim().to_owned(), unit.to_owned()));
-        Heading { name, unit, suffix }
+        let groups = behind.split(['(', '[']).skip(1);
+        let groups: Vec<&str> = groups
+            .map(|group| group.split([')', ']']).next().unwrap_or(group).trim())
+            .filter(|group| !group.is_empty())
+            .collect();
+        // A symbol in parentheses is another name of the column, anything else is meant as its unit.
+        let unit = groups.iter().find(|group| is_unit(group));
+        let is_name = |group: &&&str| !is_name(&plain(group));
+        let unit = unit.or_else(|| groups.iter().find(is_name));
+        let name = name
+            .trim()
+            .trim_end_matches(['_', ',', ':', '/'])
+            .trim_end();
+        // The longest end of the name that is a unit: `um/s` of `velocity_um/s`.
+        let ends = name.char_indices();
+        let mut ends = ends.filter(|(at, c)| *at > 0 && "_ ,/-.:".contains(*c));
+        let suffix = ends.find_map(|(at, _)| {
+            let (stem, end) = (&name[..at], &name[at + 1..]);
+            is_unit(end).then(|| (stem.trim().to_owned(), end.trim().to_owned()))
+        });
+        Heading {
+            name: name.to_owned(),
+            unit: unit.map(|unit| (*unit).to_owned()),
+            suffix,
+        }
     }
 
     /// The unit that it states.
@@ -51,12 +67,22 @@ impl Heading {
     }
 }
 
-/// A name without case and signs.
+/// A name without case, accents and signs.
 pub(super) fn plain(name: &str) -> String {
     let letters = name.chars().filter(|c| c.is_alphanumeric());
-    let small = letters.flat_map(char::to_lowercase);
-    // The micro sign is the Greek letter.
-    small.map(|c| if c == 'µ' { 'μ' } else { c }).collect()
+    letters
+        .flat_map(char::to_lowercase)
+        .map(|c| match c {
+            // The micro sign is the Greek letter.
+            'µ' => 'μ',
+            'á' | 'à' | 'â' | 'ä' => 'a',
+            'é' | 'è' | 'ê' => 'e',
+            'í' | 'ì' => 'i',
+            'ó' | 'ò' | 'ö' => 'o',
+            'ú' | 'ù' | 'ü' => 'u',
+            c => c,
+        })
+        .collect()
 }
 
 /// The head of a file with so many columns, from the lines before its numbers: the line that names most columns that are known, and that
@@ -68,7 +94,7 @@ pub(super) fn headings(
 ) -> Vec<Heading> {
     let known = |cells: &[String]| {
         let each = cells.iter().map(|cell| Heading::of(cell));
-        each.filter(is_known).count()
+        each.filter(|one| is_known(&one.plain_names())).count()
     };
     let lines = |all: &[&str]| -> Vec<Vec<String>> {
         let fitting = all.iter().map(|line| in_columns(line, separator, width));
@@ -102,7 +128,17 @@ pub(super) fn headings(
 
 /// A line of words in so many columns, by the separator of the numbers or another one; `None` where none gives that many.
 fn in_columns(line: &str, separator: Separator, width: usize) -> Option<Vec<String>> {
-    let joined = |cells: Vec<String>| {
+    let owned =
+        |cells: Vec<&str>| -> Vec<String> { cells.into_iter().map(str::to_owned).collect() };
+    // Columns without a name or a unit stand as empty cells at the end, and so do names of columns without numbers.
+    if let Separator::Sign(_) = separator
+        && separator.cells(line).count() >= width
+    {
+        let mut cells = owned(separator.filled(line));
+        cells.resize(width.max(cells.len()), String::new());
+        return Some(cells);
+    }
+    let joined = |cells: Vec<&str>| {
         // `Time (s)` is one name.
         let mut all: Vec<String> = Vec::new();
         for cell in cells {
@@ -110,15 +146,18 @@ fn in_columns(line: &str, separator: Separator, width: usize) -> Option<Vec<Stri
                 Some(last) if cell.starts_with(['(', '[']) && !last.starts_with(['(', '[']) => {
                     *last += &format!(" {cell}");
                 }
-                _ => all.push(cell),
+                _ => all.push(cell.to_owned()),
             }
         }
         all
     };
-    let signs = [';', '\t', ','].map(Separator::Sign);
-    let by_signs = std::iter::once(separator).chain(signs);
-    by_signs
-        .map(|by| by.cells(line))
-        .chain([joined(Separator::Blanks.cells(line))])
-        .find(|cells| cells.len() == width)
+    let signs = [b';', b'\t', b','].map(Separator::Sign);
+    // Names of several words stand two blanks apart.
+    let apart = line.split("  ").map(str::trim);
+    let apart: Vec<&str> = apart.filter(|cell| !cell.is_empty()).collect();
+    std::iter::once(separator)
+        .chain(signs)
+        .map(|by| owned(by.filled(line)))
+        .chain([joined(Separator::Blanks.filled(line)), owned(apart)])
+        .find(|cells: &Vec<String>| cells.len() == width)
 }

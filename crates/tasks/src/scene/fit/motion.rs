@@ -95,7 +95,7 @@ pub(super) fn loaded(options: &FitOptions, measured: &Measured) -> Result<Loaded
 }
 
 /// By a program: what it changes before the window is the velocity that it begins with.
-fn by_program(
+pub(super) fn by_program(
     program: &str,
     driving: Option<f64>,
     times: &[f64],

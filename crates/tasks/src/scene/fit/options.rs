@@ -159,7 +159,10 @@ pub struct FitOptions {
     #[arg(long, help_heading = "Fit")]
     pub each_step: bool,
 
-    /// Draw data, fit and residuals as FILE.svg or FILE.png
+    /// Look at the record without a fit: columns, sampling, gaps, steps of velocity and holds, friction and its noise
+    #[arg(long, conflicts_with_all = ["law", "states", "free", "direct_effect", "evolution_effect", "slip_length", "evolution_effect_2", "slip_length_2", "reference_friction", "healing_time", "residual_strength", "stiffness", "drift", "set", "reference_rate", "load_point", "weights", "bounds", "loss", "loss_scale", "intervals", "crosscheck", "each_step", "plot_parameters", "plot_law", "report"], help_heading = "Output")]
+    pub look: bool,
+    /// Draw data, fit and residuals, or with --look friction and displacement, as FILE.svg or FILE.png
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub plot: Option<PathBuf>,
     /// Draw the confidence ellipses of all pairs of parameters and their profiles, with --posterior the draws

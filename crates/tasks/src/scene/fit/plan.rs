@@ -15,7 +15,6 @@ use twinslip::fit::{
     minima, posterior, spread,
 };
 use twinslip::friction::positive;
-use twinslip::model::scales::Scales;
 
 /// The seed of draws where none is given.
 const SEED: u64 = 1;
@@ -233,8 +232,7 @@ impl FitPlan {
 
     /// What the numbers of rows are in: SI.
     pub fn units(&self) -> Units {
-        let one = Scales::new(1.0, 1.0, 1.0, 1.0);
-        Units::new(one.ok(), false)
+        Units::measured()
     }
 
     /// The plan, one subject a line.

@@ -1,9 +1,12 @@
 //! The files of laboratories: columns of numbers, with a header or without, separated by whatever there is.
 
-use super::cells::{Separator, decoded, is_mark, number, numeral, with_point};
+use super::cells::{Separator, decoded};
+use super::clock::Moment;
 use super::heading::{Heading, headings};
+use super::numeral::{Decimal, is_mark, numeral};
 use crate::scene::file::read_bytes;
 use crate::scene::text::given_text;
+use std::ops::Range;
 use std::path::Path;
 use twinslip::error::{Error, Result};
 
@@ -11,8 +14,19 @@ use twinslip::error::{Error, Result};
 const LONGEST: u64 = 1 << 30;
 /// What a line of remarks begins with.
 const REMARKS: [&str; 4] = ["#", "%", "//", "!"];
+/// Between what remarks of several lines stand, as in the files of PANGAEA.
+const BLOCK: (&str, &str) = ("/*", "*/");
 /// A number that stands for a missing one is farther from the others than this, in sizes of these.
 const FAR: f64 = 3.0;
+
+/// A row of numbers.
+#[derive(Debug, Clone, PartialEq)]
+struct Row {
+    /// Its line in the file.
+    line: usize,
+    /// Where it stands in the text.
+    span: Range<usize>,
+}
 
 /// A file, in columns of text.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,10 +35,11 @@ pub(super) struct Table {
     pub file: String,
     /// Empty where the file has no header.
     pub headings: Vec<Heading>,
-    /// The rows, each with its line.
-    rows: Vec<(usize, Vec<String>)>,
-    /// Whether numbers have a decimal comma.
-    has_comma: bool,
+    text: String,
+    rows: Vec<Row>,
+    separator: Separator,
+    decimal: Decimal,
+    width: usize,
 }
 
 impl Table {
@@ -34,53 +49,89 @@ impl Table {
     /// [`Error::File`], and [`Error::Input`] for a file without rows of numbers.
     pub fn read(path: &Path) -> Result<Self> {
         if let Some(text) = given_text(path) {
-            return Self::parse("the record", text);
+            return Self::parse("the record", text.to_owned());
         }
-        let text = decoded(read_bytes(path, LONGEST)?);
-        Self::parse(&path.display().to_string(), &text)
+        let text = decoded(read_bytes(path, LONGEST)?).map_err(|reason| Error::File {
+            action: "read",
+            path: path.to_owned(),
+            reason: reason.into(),
+        })?;
+        Self::parse(&path.display().to_string(), text)
     }
 
     /// Reads a text, under the name that messages shall use for it.
     ///
     /// # Errors
     /// [`Error::Input`] for a text without rows of numbers.
-    pub fn parse(file: &str, text: &str) -> Result<Self> {
-        let remark = |line: &str| {
-            let sign = REMARKS
-                .iter()
-                .find(|sign| line.trim_start().starts_with(**sign));
-            sign.is_some()
+    pub fn parse(file: &str, text: String) -> Result<Self> {
+        let mut lines = Lines::of(&text);
+        // A line in the middle shows how rows are made: what stands above them may have numbers too.
+        let of_data = lines.told.iter().skip(lines.told.len() / 2);
+        let of_data = of_data.chain(&lines.told);
+        let sample = of_data.map(|row| &text[row.span.clone()]).find_map(|line| {
+            let separator = lines.separator.unwrap_or_else(|| Separator::of(line));
+            let numeric = numeric(separator, line);
+            (numeric.contains(&true)).then_some((separator, numeric))
+        });
+        let (separator, numeric_cells) =
+            sample.ok_or_else(|| Error::Input(format!("{file} has no rows of numbers")))?;
+        let is_data = |line: &str| {
+            let own = numeric(separator, line);
+            let is = |at: usize| numeric_cells[at] && own.get(at) == Some(&true);
+            let same = (0..numeric_cells.len()).filter(|&at| is(at)).count();
+            let all = numeric_cells.iter().filter(|is| **is).count();
+            let is_as_wide =
+                own.len() == numeric_cells.len() || 2 * own.len() > numeric_cells.len();
+            is_as_wide && 2 * same > all
         };
-        let lines: Vec<&str> = text.trim_start_matches('\u{feff}').lines().collect();
-        let told = |line: &&&str| !remark(line) && !line.trim().is_empty();
-        let is_data = |line: &&str| {
-            let cells = Separator::of(line).cells(line);
-            let numbers = cells.iter().filter(|cell| numeral(cell).is_some()).count();
-            numbers > 0 && 2 * numbers >= cells.len()
-        };
-        let first = lines.iter().position(|line| told(&line) && is_data(line));
-        let first = first.ok_or_else(|| Error::Input(format!("{file} has no rows of numbers")))?;
-        let separator = Separator::of(lines[first]);
-        let numbered = lines.iter().enumerate().skip(first);
-        let rows: Vec<(usize, Vec<String>)> = numbered
-            .filter(|(_, line)| told(line))
-            .map(|(i, line)| (i + 1, separator.cells(line)))
-            .collect();
-        let words: Vec<&str> = lines[..first].iter().filter(told).copied().collect();
-        let remarks: Vec<&str> = lines[..first]
+        let first = lines
+            .told
             .iter()
-            .filter(|line| remark(line))
-            .map(|line| line.trim_start().trim_start_matches(['#', '%', '/', '!']))
+            .position(|row| is_data(&text[row.span.clone()]));
+        let first = first.ok_or_else(|| Error::Input(format!("{file} has no rows of numbers")))?;
+        let mut rows = lines.told.split_off(first);
+        let begin = rows[0].span.start;
+        // A row of empty cells is what a spreadsheet has below its table.
+        let is_empty = |line: &str| line.bytes().all(|byte| b";,\t \"".contains(&byte));
+        while rows
+            .last()
+            .is_some_and(|row| is_empty(&text[row.span.clone()]))
+        {
+            rows.pop();
+        }
+        let content = |row: &Row| &text[row.span.clone()];
+        let width = |row: &Row| separator.filled(content(row)).len();
+        /// Rows that say how many columns there are.
+        const LOOKED_AT: usize = 100;
+        let width = rows.iter().take(LOOKED_AT).map(width).max().unwrap_or(0);
+        let words: Vec<&str> = lines.told.iter().map(content).collect();
+        let remarks = lines.remarks.iter().filter(|span| span.end <= begin);
+        let remarks: Vec<&str> = remarks
+            .map(|span| {
+                text[span.clone()]
+                    .trim_start()
+                    .trim_start_matches(['#', '%', '/', '!'])
+            })
             .collect();
-        let headings = headings(&words, &remarks, (separator, rows[0].1.len()));
-        let cells = || rows.iter().flat_map(|(_, cells)| cells);
-        let has_comma = cells().any(|cell| numeral(cell).is_some() && cell.contains(','))
-            && !cells().any(|cell| cell.contains('.') && number(cell).is_some());
+        let headings = headings(&words, &remarks, (separator, width));
+        let body = &text[begin..];
+        let may_have_commas = match separator {
+            Separator::Sign(b',') => body.contains('"'),
+            _ => body.contains(','),
+        };
+        let cells = || rows.iter().flat_map(|row| separator.cells(content(row)));
+        let decimal = match may_have_commas {
+            true => Decimal::of(cells()),
+            false => Decimal::Point,
+        };
         Ok(Table {
             file: file.to_owned(),
-            headings,
             rows,
-            has_comma,
+            separator,
+            decimal,
+            width: width.max(headings.len()),
+            headings,
+            text,
         })
     }
 
@@ -89,9 +140,14 @@ impl Table {
         self.rows.len()
     }
 
+    /// How many columns there are.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
     /// The line of a row in the file.
     pub fn line(&self, row: usize) -> usize {
-        self.rows[row].0
+        self.rows[row].line
     }
 
     /// The place of a column that is asked for by `option`, by name or by number from 1 on.
@@ -106,7 +162,7 @@ impl Table {
         if let Some(place) = named {
             return Ok(place);
         }
-        let width = self.rows[0].1.len();
+        let width = self.width;
         match column.parse::<usize>() {
             Ok(number) if (1..=width).contains(&number) => Ok(number - 1),
             Ok(_) => Err(Error::Input(format!(
@@ -130,32 +186,79 @@ impl Table {
         self.headings.iter().map(|one| one.name.as_str()).collect()
     }
 
-    /// What columns there are, in words.
-    pub fn seen(&self) -> String {
-        match self.headings.is_empty() {
-            true => format!("there is no header, and {} columns", self.rows[0].1.len()),
-            false => format!("the columns are {}", self.names().join(", ")),
-        }
+    /// The name of a column, or its number where there is no header.
+    pub fn name(&self, column: usize) -> String {
+        let heading = self.headings.get(column);
+        heading.map_or((column + 1).to_string(), |one| one.name.clone())
     }
 
-    /// The first column that has one of these names, or one that begins with it, or else the only one that has it in its name, but
-    /// for names with one of `others` in them, and for columns that something else was found in.
-    pub fn like(&self, names: &[&str], others: &[&str], taken: &[usize]) -> Option<usize> {
-        let plain: Vec<[String; 2]> = self.headings.iter().map(Heading::plain_names).collect();
-        let free = || (0..plain.len()).filter(|at| !taken.contains(at));
-        let place = |is: &dyn Fn(&String) -> bool| free().find(|&at| plain[at].iter().any(is));
-        let same = names.iter().find_map(|name| place(&|own| own == name));
-        let long = || names.iter().filter(|name| name.len() > 2);
-        let is_other = |own: &String| others.iter().any(|other| own.contains(other));
-        let begins =
-            || long().find_map(|name| place(&|own| own.starts_with(name) && !is_other(own)));
-        let within = || {
-            let has =
-                |[own, _]: &[String; 2]| long().any(|name| own.contains(name)) && !is_other(own);
-            let mut all = free().filter(|&at| has(&plain[at]));
-            all.next().filter(|_| all.next().is_none())
+    /// What columns there are, in words.
+    pub fn seen(&self) -> String {
+        if !self.headings.is_empty() {
+            return format!("the columns are {}", self.names().join(", "));
+        }
+        let ends = |column: usize| {
+            let cell = |row: &Row| self.cell(row, column).unwrap_or("nothing").to_owned();
+            let (first, last) = (&self.rows[0], &self.rows[self.rows.len() - 1]);
+            format!("{} from {} to {}", column + 1, cell(first), cell(last))
         };
-        same.or_else(begins).or_else(within)
+        /// More columns are not told one by one.
+        const TOLD: usize = 8;
+        let each: Vec<String> = (0..self.width.min(TOLD)).map(ends).collect();
+        let more = if self.width > TOLD { ", ..." } else { "" };
+        format!(
+            "there is no header, and {} columns: {}{more}",
+            self.width,
+            each.join(", ")
+        )
+    }
+
+    fn cell(&self, row: &Row, column: usize) -> Option<&str> {
+        let mut cells = self.separator.cells(&self.text[row.span.clone()]);
+        cells.nth(column).filter(|cell| !cell.is_empty())
+    }
+
+    /// Whether a column begins with a number.
+    pub fn is_numeric(&self, column: usize) -> bool {
+        let first = self.cell(&self.rows[0], column);
+        first.is_some_and(|cell| numeral(cell).is_some())
+    }
+
+    /// Whether a column begins with a time of day.
+    pub fn is_clock(&self, column: usize) -> bool {
+        let first = self.cell(&self.rows[0], column);
+        first.is_some_and(|cell| Moment::read(cell).is_some())
+    }
+
+    /// What each row has in a column.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with file and line for what `read` refuses, which is no `kind`.
+    fn each<T>(
+        &self,
+        column: usize,
+        (what, kind): (&str, &str),
+        read: impl Fn(&str) -> Option<T>,
+    ) -> Result<Vec<T>> {
+        let of = |row: &Row| {
+            let wrong =
+                |why: String| Error::Input(format!("{}:{}: the {what} {why}", self.file, row.line));
+            let cell = self
+                .cell(row, column)
+                .ok_or_else(|| wrong("is missing".into()))?;
+            read(cell).ok_or_else(|| wrong(format!("{cell:?} is not {kind}")))
+        };
+        self.rows.iter().map(of).collect()
+    }
+
+    /// The times of a column of dates and clocks, in s since the first.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with file and line for what is none.
+    pub fn clock(&self, column: usize) -> Result<Vec<f64>> {
+        let kind = "a time of day; give seconds, or times such as 2023-05-01T12:00:00.5";
+        let moments = self.each(column, ("time", kind), Moment::read)?;
+        Ok(Moment::seconds(&moments))
     }
 
     /// The numbers of a column.
@@ -163,23 +266,8 @@ impl Table {
     /// # Errors
     /// [`Error::Input`] with file and line for what is no finite number.
     pub fn numbers(&self, column: usize, what: &str) -> Result<Vec<f64>> {
-        let of = |(line, cells): &(usize, Vec<String>)| {
-            let cell = cells.get(column);
-            let cell = cell.ok_or_else(|| {
-                Error::Input(format!("{}:{line}: the {what} is missing", self.file))
-            })?;
-            let read = match self.has_comma {
-                true => number(cell).or_else(|| number(&with_point(cell)?)),
-                false => number(cell),
-            };
-            read.filter(|x| x.is_finite()).ok_or_else(|| {
-                Error::Input(format!(
-                    "{}:{line}: the {what} {cell:?} is not a finite number",
-                    self.file
-                ))
-            })
-        };
-        let numbers: Vec<f64> = self.rows.iter().map(of).collect::<Result<_>>()?;
+        let read = |cell: &str| self.decimal.number(cell).filter(|x| x.is_finite());
+        let numbers = self.each(column, (what, "a finite number"), read)?;
         let others = numbers.iter().filter(|x| !is_mark(**x));
         let size = others.fold(0.0, |size: f64, x| size.max(x.abs()));
         let missing = |&(_, x): &(usize, &f64)| is_mark(*x) && x.abs() > FAR * size;
@@ -192,4 +280,65 @@ impl Table {
             ))),
         }
     }
+}
+
+/// Which cells of a line are numbers.
+fn numeric(separator: Separator, line: &str) -> Vec<bool> {
+    let cells = separator.filled(line);
+    cells.iter().map(|cell| numeral(cell).is_some()).collect()
+}
+
+/// The lines of a text.
+struct Lines {
+    /// Those that are neither blank nor remarks.
+    told: Vec<Row>,
+    remarks: Vec<Range<usize>>,
+    /// That which a spreadsheet says in its first line, as `sep=;`.
+    separator: Option<Separator>,
+}
+
+impl Lines {
+    fn of(text: &str) -> Self {
+        let mut lines = Lines {
+            told: Vec::new(),
+            remarks: Vec::new(),
+            separator: None,
+        };
+        let mut is_within = false;
+        let mut end = 0;
+        for (i, whole) in text.split_inclusive('\n').enumerate() {
+            let begin = end;
+            end += whole.len();
+            let marked = whole.trim_end_matches(['\n', '\r']);
+            let line = if i == 0 {
+                marked.trim_start_matches('\u{feff}')
+            } else {
+                marked
+            };
+            let span = begin + (marked.len() - line.len())..begin + marked.len();
+            let bare = line.trim_start();
+            is_within |= bare.starts_with(BLOCK.0);
+            if is_within || REMARKS.iter().any(|sign| bare.starts_with(sign)) {
+                is_within &= !line.contains(BLOCK.1);
+                lines.remarks.push(span);
+            } else if i == 0
+                && let Some(sign) = said(bare)
+            {
+                lines.separator = Some(sign);
+            } else if !bare.is_empty() {
+                lines.told.push(Row { line: i + 1, span });
+            }
+        }
+        lines
+    }
+}
+
+/// The separator that a first line `sep=;` says.
+fn said(line: &str) -> Option<Separator> {
+    let line = line.trim_end().trim_matches('"');
+    let head = line.get(..4)?;
+    let sign = line.as_bytes()[4..].first().copied();
+    let alone = line.len() <= 5 && head.eq_ignore_ascii_case("sep=");
+    // A tab at the end was trimmed.
+    alone.then(|| Separator::Sign(sign.unwrap_or(b'\t')))
 }
