@@ -25,7 +25,7 @@ fn holds_of_runs_are_those_of_references() {
             let lasts = number(&hold["duration"]);
             let made = object(&format!(
                 "integrate --law {law} --interfaces 1 --driving 1 --stiffness {} --damping {} --direct-effect {} --evolution-effect {} --reference-friction {} \
-                 --program 0:0,{lasts}:1 --until {} --rtol 1e-13 --atol 1e-13 --final",
+                 --program 0:0,{lasts}:1 --until {} --rtol 1e-13 --atol 1e-13 --final-only",
                 of("K"),
                 of("eta"),
                 of("a"),
@@ -97,7 +97,7 @@ fn a_fit_and_a_run_say_the_same_of_holds() {
     assert_eq!(result["fit"]["verdict"], "converged");
     let run = object(
         "integrate --si --law ageing --interfaces 1 --direct-effect 0.009 --evolution-effect 0.011 --slip-length 1.2e-5 --reference-friction 0.6 \
-         --reference-rate 1e-5 --normal-stress 1e6 --stiffness 1.5e9 --driving 1e-5 --program 30:0,40:1e-5,80:0,180:1e-5,220:0,420:1e-5 --until 460 --damping 0 --final",
+         --reference-rate 1e-5 --normal-stress 1e6 --stiffness 1.5e9 --driving 1e-5 --program 30:0,40:1e-5,80:0,180:1e-5,220:0,420:1e-5 --until 460 --damping 0 --final-only",
     );
     let pairs = result["holds"].as_array().expect("holds");
     let exact = run["result"]["holds"].as_array().expect("holds");
@@ -182,7 +182,7 @@ fn records_share_parameters_and_those_that_differ_are_named() {
 #[test]
 fn draws_agree_with_the_fit_and_go_into_ensembles() {
     let path = file("draws", &steps(1e-4, 2000.0), 4000, 6);
-    let object_of = folder("fit_laboratory_draws").join("fit.json");
+    let object_of = folder("fit_laboratory_draws_of").join("fit.json");
     let name = object_of.to_str().expect("a name");
     let ended = run(&[
         "fit",

@@ -148,7 +148,9 @@ def text(option: Option, value: Any) -> list[str]:
     if option.name == "program" and isinstance(value, Sequence):
         return [",".join(_change(field, change) for change in value)]
     if option.name == "data":
-        return [_columns(field, value)]
+        several = value if isinstance(value, (list, tuple)) else [value]
+        paths = (str, os.PathLike)
+        return [os.fspath(one) if isinstance(one, paths) else _columns(field, one) for one in several]
     if isinstance(value, Mapping):
         if option.name == "box":
             pairs = (f"{name}={_joined(field, pair, 'A:B')}" for name, pair in value.items())

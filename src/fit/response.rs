@@ -39,6 +39,16 @@ impl Response {
         sliders: &dyn Sliders<N>,
         motion: &Motion,
         times: &[f64],
+        given: (&[f64], &[usize]),
+    ) -> Result<Self> {
+        Self::to(TOLERANCE, (sliders, motion), times, given)
+    }
+
+    /// The same, where steps may err by so much.
+    pub(super) fn to<const N: usize>(
+        tolerance: f64,
+        (sliders, motion): (&dyn Sliders<N>, &Motion),
+        times: &[f64],
         (parameters, free): (&[f64], &[usize]),
     ) -> Result<Self> {
         let reference = sliders.reference_rate();
@@ -46,7 +56,7 @@ impl Response {
         let mut y = sliders.steady(parameters, motion.before / reference)?;
         let mut slopes = steady_slopes(&*field, &y, free)?;
         let mut tangent = tangent_of(&*field, free)?;
-        let mut along = Observations::new(times, free.len());
+        let mut along = Observations::new(times, free.len(), tolerance);
         along.limit = MAX_STEPS + STEPS_EACH * motion.stretches.len();
         for (i, stretch) in motion.stretches.iter().enumerate() {
             let ((begin, end), (from, to)) = (stretch.span, stretch.velocity);
@@ -129,10 +139,12 @@ struct Observations<'a> {
     series: Vec<[f64; WIDTH]>,
     steps: usize,
     limit: usize,
+    /// What a step may err by.
+    tolerance: f64,
 }
 
 impl<'a> Observations<'a> {
-    fn new(times: &'a [f64], parameters: usize) -> Self {
+    fn new(times: &'a [f64], parameters: usize, tolerance: f64) -> Self {
         let groups = (parameters + 1).div_ceil(WIDTH);
         Observations {
             times,
@@ -143,6 +155,7 @@ impl<'a> Observations<'a> {
             series: Vec::new(),
             steps: 0,
             limit: MAX_STEPS,
+            tolerance,
         }
     }
 
@@ -154,8 +167,8 @@ impl<'a> Observations<'a> {
         (y, slopes): (&State<N>, &Slopes<N>),
     ) -> Result<(State<N>, Slopes<N>)> {
         let accuracy = Accuracy {
-            order: tangent.order(TOLERANCE),
-            tolerances: (TOLERANCE, TOLERANCE),
+            order: tangent.order(self.tolerance),
+            tolerances: (self.tolerance, self.tolerance),
         };
         tangent.start(&y.data.0[0]);
         let (mut expansion, mut derivatives) = (Expansion::new(), Vec::new());

@@ -1,7 +1,7 @@
 //! Whether records agree on what they share.
 
 use super::{Fit, FittedParameter, Scale};
-use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Records that agree differ so much, or more, in this part of cases.
 const DISAGREE: f64 = 0.01;
@@ -22,7 +22,7 @@ pub struct Agreement {
     /// By what the standard error is multiplied as the records differ more than their noise explains: the square root of Q over its degrees
     /// of freedom (Birge 1932), 1 where they agree.
     pub widening: f64,
-    /// Records that differ from the mean of all others by more than chance explains.
+    /// Records without which the others agree: the fewest, and less than half of them.
     pub outlying: Vec<usize>,
 }
 
@@ -37,37 +37,21 @@ impl Agreement {
             (!is_lost && error.is_finite() && error > 0.0).then_some((variable, error))
         });
         let alone: Vec<Option<(f64, f64)>> = alone.collect();
-        let known = |except: Option<usize>| {
-            let all = alone.iter().enumerate();
-            all.filter(move |(i, _)| Some(*i) != except)
-                .filter_map(|(_, one)| *one)
-        };
-        let count = known(None).count();
-        let (middle, _) = mean(known(None));
-        let q: f64 = known(None)
-            .map(|(x, error)| ((x - middle) / error).powi(2))
-            .sum();
-        let degrees_of_freedom = count.saturating_sub(1);
-        let probability = match degrees_of_freedom {
-            0 => 1.0,
-            freedom => ChiSquared::new(freedom as f64).map_or(1.0, |chi| chi.sf(q)),
-        };
+        let known: Vec<(usize, (f64, f64))> = alone
+            .iter()
+            .enumerate()
+            .filter_map(|(i, one)| Some((i, (*one)?)))
+            .collect();
+        let q = disagreement(&known);
+        let degrees_of_freedom = known.len().saturating_sub(1);
+        let probability = chance(q, degrees_of_freedom);
         let widening = match probability < DISAGREE {
             true => (q / degrees_of_freedom as f64).sqrt().max(1.0),
             false => 1.0,
         };
-        // Of two records that differ none is the one that is wrong.
-        let limit = Normal::standard().inverse_cdf(1.0 - 0.5 * DISAGREE / count.max(1) as f64);
-        let differs = |i: usize| {
-            let (x, error) = alone[i]?;
-            let (others, of_others) = mean(known(Some(i)));
-            Some((x - others).abs() > limit * error.hypot(of_others))
-        };
-        let all = 0..alone.len();
-        let outlying = all.filter(|&i| count > 2 && widening > 1.0 && differs(i) == Some(true));
         Agreement {
             name: name.to_owned(),
-            outlying: outlying.collect(),
+            outlying: outlying(known),
             q,
             degrees_of_freedom,
             probability,
@@ -77,15 +61,54 @@ impl Agreement {
     }
 }
 
-/// The mean by weights of inverse variances, and its standard error.
-fn mean(each: impl Iterator<Item = (f64, f64)>) -> (f64, f64) {
+/// Records that are taken away one after the other, each time the one that the others disagree with most, until the rest agree. Of two records that
+/// differ none is the one that is wrong, and of any number not half.
+fn outlying(mut rest: Vec<(usize, (f64, f64))>) -> Vec<usize> {
+    let count = rest.len();
+    let mut out = Vec::new();
+    while chance(disagreement(&rest), rest.len().saturating_sub(1)) < DISAGREE {
+        let without = |at: usize| {
+            let mut others = rest.clone();
+            others.remove(at);
+            disagreement(&others)
+        };
+        let places = 0..rest.len();
+        let Some(at) = places.min_by(|&i, &j| without(i).total_cmp(&without(j))) else {
+            break;
+        };
+        out.push(rest.remove(at).0);
+    }
+    if 2 * out.len() >= count {
+        out.clear();
+    }
+    out.sort_unstable();
+    out
+}
+
+/// Cochran's Q.
+fn disagreement(each: &[(usize, (f64, f64))]) -> f64 {
+    let all = || each.iter().map(|(_, one)| *one);
+    let middle = mean(all());
+    all().map(|(x, error)| ((x - middle) / error).powi(2)).sum()
+}
+
+/// How often records that agree have such a Q, or a larger one.
+fn chance(q: f64, degrees_of_freedom: usize) -> f64 {
+    match degrees_of_freedom {
+        0 => 1.0,
+        freedom => ChiSquared::new(freedom as f64).map_or(1.0, |chi| chi.sf(q)),
+    }
+}
+
+/// The mean by weights of inverse variances.
+fn mean(each: impl Iterator<Item = (f64, f64)>) -> f64 {
     let (mut sum, mut weights) = (0.0, 0.0);
     for (x, error) in each {
         let weight = error.powi(-2);
         sum += weight * x;
         weights += weight;
     }
-    (sum / weights, 1.0 / f64::sqrt(weights))
+    sum / weights
 }
 
 fn variable(one: &FittedParameter) -> (f64, f64) {

@@ -10,6 +10,9 @@ use crate::error::Result;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
+/// What steps may err by where friction is compared with that of a minimum: some ten thousandths of the noise of records.
+const COARSE: f64 = 3e-8;
+
 /// The density of the variables of a problem as numbers without bounds.
 pub(super) struct Density<'a, const N: usize> {
     pub problem: &'a Problem<'a, N>,
@@ -166,7 +169,8 @@ impl<'a, const N: usize> Density<'a, N> {
             let (parameters, drift) = self.problem.parameters_at(i, x);
             let given = (&parameters[..], &places[..]);
             let times = &about.times[i];
-            let response = Response::of(self.problem.sliders, one.motion, times, given)?;
+            let of = (self.problem.sliders, one.motion);
+            let response = Response::to(COARSE, of, times, given)?;
             let count = times.len();
             let differences = DVector::from_fn(count + 1, |k, _| match k < count {
                 true => response.friction[k] - about.friction[i][k],

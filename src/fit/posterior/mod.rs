@@ -19,7 +19,7 @@ use rayon::prelude::*;
 /// Chains, which show by their agreement whether they have come to the posterior.
 const CHAINS: usize = 4;
 /// Draws that a chain takes to find its metric and its step, at least, and in parts of those that are kept.
-const WARM_UP: usize = 300;
+const WARM_UP: usize = 200;
 /// How far differences of friction go for which a record is made few points, in standard errors.
 const FAR: f64 = 4.0;
 /// The first tolerance of that, and how often it is made ten times smaller.

@@ -5,7 +5,7 @@
 
 use super::equations::{Equations, Subspace};
 use super::options::{ModelOptions, NumericsOptions};
-use super::plan::{self, USUAL_START};
+use super::plan::{self, STEADY_START, USUAL_START};
 use super::program::{Program, Stretch};
 use super::system::{Described, System};
 use super::text::TextModel;
@@ -213,15 +213,25 @@ impl AnySystem {
     ///
     /// # Errors
     /// [`Error::Input`] and [`Error::Parameter`] for what can't be read or is outside its domain.
-    pub(super) fn start(&self, text: Option<&str>) -> Result<Vector> {
+    ///
+    /// Under a program a single interface begins at its steady state, as experiments do: there is no symmetry to leave.
+    pub(super) fn start(&self, text: Option<&str>, is_programmed: bool) -> Result<Vector> {
         match &self.0 {
             Kind::BuiltIn(system, loading) => {
-                let text = text.unwrap_or(USUAL_START);
+                let is_steady = is_programmed && system.interfaces == 1 && loading.driving > 0.0;
+                let usual = if is_steady { STEADY_START } else { USUAL_START };
+                let text = text.unwrap_or(usual);
                 let (tau, log_state) = plan::start(text, system, loading)?;
                 let all = [tau, log_state[0], log_state[1]];
                 Ok(Vector::from_column_slice(&all[..=system.interfaces]))
             }
-            Kind::Formulas(model) => model.start(text),
+            Kind::Formulas(model) => {
+                let is_one = model
+                    .slab
+                    .as_ref()
+                    .is_some_and(|slab| slab.interfaces() == 1);
+                model.start(text.or((is_programmed && is_one).then_some(STEADY_START)))
+            }
         }
     }
 

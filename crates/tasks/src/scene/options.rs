@@ -11,7 +11,8 @@ use twinslip::integrate::Choice;
 
 const START_HELP: &str = "Initial state: TAU,PSI1,PSI2 (TAU,PSI for one interface), or near-symmetric[:EPS]: tau and psi1 at the \
     symmetric steady state and psi2 = psi1 exp(EPS), EPS = 0.01 by default, or -0.01 where psi2 would exceed 1; unequal interfaces start \
-    at their steady states at V_H/2, the second psi times exp(EPS) [default: near-symmetric]. For N interfaces or clusters: one psi \
+    at their steady states at V_H/2, the second psi times exp(EPS) [default: near-symmetric; of one interface under a program near-symmetric:0, its \
+    steady state]. For N interfaces or clusters: one psi \
     each, or spread[:EPS[:SEED]], psi at the steady state times exp(EPS z) with z drawn between -1 and 1 [default from 8 interfaces on]. For a system from a file: all states in order [default: its table start]";
 
 const ORBIT_START_HELP: &str = "A point on or near the orbit: TAU,PSI1,PSI2 (TAU,PSI for one interface); near-symmetric[:EPS]; or \

@@ -19,6 +19,8 @@ use twinslip::model::Loading;
 
 /// How a run starts where nobody says otherwise.
 pub(super) const USUAL_START: &str = "near-symmetric";
+/// The steady state itself.
+pub(super) const STEADY_START: &str = "near-symmetric:0";
 /// The asymmetry of `--start near-symmetric` where none is given.
 pub(super) const NEAR_SYMMETRIC: f64 = 0.01;
 /// Total slip rate over V_H from which on an excursion counts as a stick-slip event.
@@ -141,7 +143,7 @@ impl Plan {
             .transpose()?;
         let system = AnySystem::in_time(&options.model, program.as_ref())?;
         let events = events(options, &system)?;
-        let start = system.start(options.start.as_deref())?;
+        let start = system.start(options.start.as_deref(), program.is_some())?;
         let until = system.units().inward(Quantity::Time, until(options)?);
         let sampling = sampling(options, system.units(), until)?;
         let mut columns = run_columns(&system);

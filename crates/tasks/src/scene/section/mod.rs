@@ -77,7 +77,7 @@ impl SectionPlan {
                 "a system of one state has no return map: it never comes back".into(),
             ));
         }
-        let start = system.start(options.start.as_deref())?;
+        let start = system.start(options.start.as_deref(), false)?;
         let (method, tolerances) = system.numerics(&options.numerics)?;
         counted(options)?;
         let (state, value) = surface(options.surface.as_deref(), &system)?;
