@@ -106,7 +106,10 @@ fn a_gap_is_told_and_not_refused_by_a_look() {
         (number(&gaps[0], "/from") - 9.8).abs() < 1e-9
             && (number(&gaps[0], "/to") - 24.9).abs() < 1e-9
     );
-    refused(&format!("fit {}", path.display()), "a gap of 15.1");
+    refused(
+        &format!("fit {}", path.display()),
+        "a gap from 9.8 to 24.9 s",
+    );
     // What a fit would use is not accepted and ignored.
     refused(
         &format!("fit {HOLD} --look --law slip"),
@@ -160,7 +163,7 @@ fn sizes_that_rocks_do_not_have_and_trends_are_questioned() {
     let fit = "--law slip --intervals linear --free direct_effect,evolution_effect,slip_length,reference_friction --format json";
     // Micrometres that were called millimetres.
     let large = record("large.csv", 1e6, 0.0);
-    let ended = twinslip(&format!("fit {large} {fit} --stiffness 500"));
+    let ended = twinslip(&format!("fit {large} {fit} --stiffness 0.5/mm"));
     assert!(
         ended.err.contains("slip_length is 0.0100 m")
             || ended.err.contains("slip_length is 0.0101 m"),

@@ -57,7 +57,7 @@ pub fn change(command: &str, kind: Kind, option: &str) -> Option<Change> {
         }),
         "plot" => File(""),
         "curves" => Exempt,
-        "data" => To("tests/data/laboratory/steady-friction.csv"),
+        "data" => To("tests/data/steady-friction.csv"),
         "plot-events" => File("--events"),
         _ if model(option) => return model_change(command, kind, option),
         "along" if system && command == "branch orbits" => To("a --from 1 --to 1.5"),

@@ -32,7 +32,7 @@ const MOST_USED: [(&str, &str); 9] = [
         "sweep",
         "driving stiffness grid system basin resume plot output",
     ),
-    ("fit", "law free set from to plot report output"),
+    ("fit", "look law free set from to plot report output"),
 ];
 /// Options whose first clause says too little.
 const IN_SHORT: [(&str, &str); 9] = [

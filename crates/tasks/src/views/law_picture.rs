@@ -86,14 +86,14 @@ pub fn picture_of_law(
 }
 
 /// The colour of what was measured.
-const MEASURED: usize = 4;
+const MEASURED: usize = 1;
 
 /// What was measured, each with its uncertainty as a bar.
 fn measured_marks(units: &Units, measured: &[MeasuredFriction]) -> impl Iterator<Item = Mark> {
     measured.iter().map(|one| {
         let rate = units.outward(Quantity::SlipRate, one.slip_rate);
         let ends = |error: f64| (one.friction - error, one.friction + error);
-        let mark = Mark::new(rate, one.friction, "").symbol(Symbol::Dot);
+        let mark = Mark::new(rate, one.friction, "").symbol(Symbol::Diamond);
         Mark {
             bars: Bars {
                 x: None,
@@ -106,7 +106,7 @@ fn measured_marks(units: &Units, measured: &[MeasuredFriction]) -> impl Iterator
 
 fn measured_key(_: &MeasuredFriction) -> Key {
     Key {
-        symbol: Symbol::Dot,
+        symbol: Symbol::Diamond,
         filled: true,
         colour: Some(MEASURED),
         label: "measured".into(),

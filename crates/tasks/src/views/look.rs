@@ -56,97 +56,90 @@ pub fn look_columns() -> Vec<Column<LookStretch>> {
 
 /// Metres, as laboratories have them.
 const MICRO: f64 = 1e6;
+/// A hold that is narrower than this part of the picture is a line.
+const NARROW: f64 = 2e-3;
 /// Parts of a record of each of which the least and the largest value are drawn.
 const PARTS: usize = 3000;
 /// More stretches than these have no room for their velocity.
-const NAMED: usize = 14;
+const NAMED: usize = 20;
 
-/// Friction and the displacement of the load point against time, with the steps of velocity as lines and the holds shaded.
+/// Friction against time, and against the displacement of the load point, with its steps of velocity as lines and its holds shaded.
 pub fn picture_of_look(look: &Look) -> Drawing {
     let (times, friction) = (&look.measured.times, &look.measured.friction);
-    let x = || Axis::linear("time [s]");
-    let (t, mu) = outline(times, friction);
     let margin = 0.04 * f64::max(look.friction[2] - look.friction[1], f64::MIN_POSITIVE);
     let span = (look.friction[1] - margin, look.friction[2] + margin);
-    let mut all = vec![
+    let panel = |title: &str, axis: &str, x: &[f64]| {
+        let (x, mu) = outline(x, friction);
         Panel {
-            series: vec![PlotSeries::dots("", t, mu).colour(4)],
-            ..Panel::new("friction", x(), Axis::linear("friction coefficient μ"))
+            series: vec![PlotSeries::dots("", x, mu).colour(4)],
+            ..Panel::new(
+                title,
+                Axis::linear(axis),
+                Axis::linear("friction coefficient μ"),
+            )
         }
-        .marked(look, span),
-    ];
+    };
+    let (begin, end) = (times[0], times[times.len() - 1]);
+    let in_time = |t: f64| t.clamp(begin, end);
+    let mut all = vec![marked(
+        panel("friction", "time [s]", times),
+        look,
+        span,
+        &in_time,
+    )];
     if let Some(moved) = &look.measured.displacement {
         let along: Vec<f64> = moved.iter().map(|x| (x - moved[0]) * MICRO).collect();
-        let most = along.iter().fold(0.0, |most: f64, x| most.max(*x));
-        let (t, along) = outline(times, &along);
-        let panel = Panel {
-            series: vec![PlotSeries::new("", t, along).colour(0)],
-            notes: velocities(look, most),
-            ..Panel::new(
-                "load point, with its velocities in µm/s",
-                x(),
-                Axis::linear("displacement [µm]"),
-            )
-        };
-        all.push(panel.marked(look, (0.0, most)));
+        let at = |t: f64| along[times.partition_point(|&own| own < t).min(along.len() - 1)];
+        let title = "the same, with the velocities of the load point in µm/s";
+        let mut second = panel(title, "load-point displacement [µm]", &along);
+        second.notes = velocities(look, &at, span.0);
+        all.push(marked(second, look, (span.0 - 2.0 * margin, span.1), &at));
     }
     Drawing::columns(vec![all])
 }
 
-trait Marked {
-    fn marked(self, look: &Look, span: (f64, f64)) -> Self;
-}
-
-impl Marked for Panel {
-    /// With lines where the velocity changes, and the holds shaded, over the height of `span`.
-    fn marked(mut self, look: &Look, span: (f64, f64)) -> Self {
-        let named = |i: usize, name: &str| {
-            if i == 0 {
-                name.to_owned()
-            } else {
-                String::new()
-            }
-        };
-        for (i, (_, after)) in look.steps().enumerate() {
-            let at = after.span.0;
-            let line = PlotSeries::new(
-                named(i, "step of velocity"),
-                vec![at, at],
-                vec![span.0, span.1],
-            );
-            // Behind the record.
-            self.series.insert(i, line.stroke(Stroke::Dashed).colour(1));
-        }
-        for (_, hold, _) in look.holds() {
-            self.areas.push(Area {
+/// With lines where the velocity changes, and the holds shaded, over the height of `span`; `at` is where a time is drawn.
+fn marked(mut panel: Panel, look: &Look, span: (f64, f64), at: &dyn Fn(f64) -> f64) -> Panel {
+    for (i, (_, after)) in look.steps().enumerate() {
+        let x = at(after.span.0);
+        let name = if i == 0 { "step of velocity" } else { "" };
+        let line = PlotSeries::new(name, vec![x, x], vec![span.0, span.1]);
+        // Behind the record.
+        panel
+            .series
+            .insert(i, line.stroke(Stroke::Dashed).colour(1));
+    }
+    for (i, (_, hold, _)) in look.holds().enumerate() {
+        let (from, to) = (at(hold.span.0), at(hold.span.1));
+        if to - from > NARROW * (at(f64::INFINITY) - at(f64::NEG_INFINITY)).abs() {
+            panel.areas.push(Area {
                 label: "hold".into(),
-                x: vec![hold.span.0, hold.span.1],
+                x: vec![from, to],
                 lower: vec![span.0; 2],
                 upper: vec![span.1; 2],
                 colour: 2,
                 left_out: Vec::new(),
             });
+        } else {
+            let name = if i == 0 { "hold" } else { "" };
+            let line = PlotSeries::new(name, vec![from, from], vec![span.0, span.1]);
+            panel.series.insert(i, line.colour(2));
         }
-        self
     }
+    panel
 }
 
-/// The velocity of each stretch, above the displacement at its middle.
-fn velocities(look: &Look, most: f64) -> Vec<Note> {
-    if look.stretches.len() > NAMED {
-        return Vec::new();
-    }
-    let times = &look.measured.times;
-    let moved = look.measured.displacement.as_deref().unwrap_or_default();
+/// The velocity of each stretch below the record, in the middle of the stretch.
+fn velocities(look: &Look, at: &dyn Fn(f64) -> f64, height: f64) -> Vec<Note> {
+    let slides = look.stretches.iter().filter(|one| !one.is_hold);
     let note = |one: &LookStretch| {
-        let middle = 0.5 * (one.span.0 + one.span.1);
-        let at = times.partition_point(|&t| t < middle).min(times.len() - 1);
-        let height = (moved.get(at)? - moved.first()?) * MICRO;
-        let digits = in_digits(one.velocity.value * MICRO, 3);
-        let above = if height > 0.5 * most { -0.12 } else { 0.12 };
-        (!one.is_hold).then(|| Note::new(middle, height + above * most, digits))
+        let middle = 0.5 * (at(one.span.0) + at(one.span.1));
+        Note::new(middle, height, in_digits(one.velocity.value * MICRO, 3))
     };
-    look.stretches.iter().filter_map(note).collect()
+    match look.stretches.len() > NAMED {
+        true => Vec::new(),
+        false => slides.map(note).collect(),
+    }
 }
 
 /// The least and the largest value of each part of a long record, all of a short one: the picture is the same.

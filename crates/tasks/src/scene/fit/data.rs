@@ -66,9 +66,8 @@ impl Measured {
         match measured.gaps.first() {
             None => Ok(measured),
             Some((from, to)) => Err(Error::Input(format!(
-                "{}: a gap of {} s after {from} s, more than {GAP:.0} times as long as its neighbours; give a window on one side of it by `from` and `to`",
-                measured.file,
-                to - from
+                "{}: a gap from {from} to {to} s, more than {GAP:.0} times as long as its neighbours; give a window on one side of it by `from` and `to`",
+                measured.file
             ))),
         }
     }

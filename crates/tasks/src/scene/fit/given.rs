@@ -20,6 +20,7 @@ pub(super) struct Given {
     lengths: (f64, f64),
     /// Whether the stiffness was given in Pa/m.
     is_of_stress: bool,
+    normal_stress: Option<f64>,
 }
 
 impl Given {
@@ -37,18 +38,11 @@ impl Given {
         let mut is_of_stress = false;
         let stiffness = match &options.stiffness {
             None => None,
-            Some(text) => Some(match (GivenStiffness::read(text)?, normal_stress) {
-                (GivenStiffness::OfFriction(k), _) => k,
-                (GivenStiffness::OfStress(k), Some(sigma)) => {
-                    is_of_stress = true;
-                    k / sigma
-                }
-                (GivenStiffness::OfStress(_), None) => {
-                    return Err(Error::Input(
-                        "`stiffness` in Pa/m needs the `normal_stress`; or give it as friction per length, such as 0.003/um".into(),
-                    ));
-                }
-            }),
+            Some(text) => {
+                let stiffness = GivenStiffness::read(text)?;
+                is_of_stress = matches!(stiffness, GivenStiffness::OfStress(_));
+                Some(stiffness.of_friction(normal_stress)?)
+            }
         };
         let mut given = Vec::new();
         for (name, value) in [
@@ -70,10 +64,19 @@ impl Given {
             given.extend(value.map(|x| (name.to_owned(), x)));
         }
         for (name, value) in assignments(&options.set)? {
-            given.push((name.replace('-', "_"), value));
+            let name = name.replace('-', "_");
+            let value = match name.as_str() {
+                "stiffness" => {
+                    is_of_stress = true;
+                    GivenStiffness::OfStress(value).of_friction(normal_stress)?
+                }
+                _ => value,
+            };
+            given.push((name, value));
         }
         Ok(Given {
             values: given,
+            normal_stress,
             // Over a shorter length friction decays between two samples.
             lengths: (spacing, LONGEST * moved),
             is_of_stress,
@@ -142,7 +145,19 @@ pub(super) fn bounds(
     };
     let wrong = || Error::Input(format!("`bounds` {text:?} must be NAME=A:B with A below B"));
     let (low, high) = own.split_once(':').ok_or_else(wrong)?;
-    let read = |text: &str| text.trim().parse::<f64>().map_err(|_| wrong());
+    let read = |text: &str| {
+        let text = text.trim();
+        let number = text.parse::<f64>().ok();
+        match (number, given.normal_stress) {
+            // As results are: in Pa/m where the normal stress is known, else in friction per metre.
+            (Some(k), Some(sigma)) if name == "stiffness" => Ok(k / sigma),
+            (Some(x), _) => Ok(x),
+            (None, sigma) if name == "stiffness" => GivenStiffness::read(text)
+                .and_then(|k| k.of_friction(sigma))
+                .map_err(|_| wrong()),
+            (None, _) => Err(wrong()),
+        }
+    };
     let (low, high) = (read(low)?, read(high)?);
     if low >= high {
         return Err(wrong());

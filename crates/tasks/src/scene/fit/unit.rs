@@ -89,6 +89,20 @@ pub(super) enum GivenStiffness {
 }
 
 impl GivenStiffness {
+    /// As friction per metre.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for one in Pa/m where the normal stress is not known.
+    pub fn of_friction(self, normal_stress: Option<f64>) -> Result<f64> {
+        match (self, normal_stress) {
+            (GivenStiffness::OfFriction(k), _) => Ok(k),
+            (GivenStiffness::OfStress(k), Some(sigma)) => Ok(k / sigma),
+            (GivenStiffness::OfStress(_), None) => Err(Error::Input(
+                "`stiffness` in Pa/m needs the `normal_stress`; or give it as friction per length, such as 0.003/um".into(),
+            )),
+        }
+    }
+
     /// Reads it.
     ///
     /// # Errors
