@@ -311,7 +311,7 @@ fn wrong_input_is_told_in_one_sentence() {
         ),
         (format!("fit {short}"), "the window has 11 samples"),
         (format!("fit {still}"), "has no step of velocity"),
-        (format!("fit {gap}"), "a gap of"),
+        (format!("fit {gap}"), "a gap from"),
         (
             format!("fit {unit}"),
             "the unit \"furlongs\" of the column time is none of",

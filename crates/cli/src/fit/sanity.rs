@@ -1,7 +1,9 @@
 //! What a user may want to look at again: sizes that rocks do not have, and residuals with a trend.
 
-use twinslip::fit::{Autoregression, DRIFT, Fit};
-use twinslip_tasks::scene::{FitPlan, LawToFit, Recording};
+use nalgebra::{DMatrix, DVector};
+use twinslip::error::Result;
+use twinslip::fit::{Autoregression, DRIFT, Fit, Problem, Record};
+use twinslip_tasks::scene::{FitPlan, LawToFit, WithProblem};
 use twinslip_tasks::views::in_digits;
 
 /// Longest slip lengths of rocks and gouges in m, most of a and b, and between what friction coefficients are.
@@ -48,12 +50,7 @@ pub fn questions(plan: &FitPlan, law: &LawToFit, fit: &Fit) -> Vec<String> {
     }
     all.extend(far_reference(plan));
     all.extend(stick_slip(law, &value));
-    let mut fitted = &fit.fitted[..];
-    for own in &plan.recordings {
-        let (here, rest) = fitted.split_at(own.record.times.len());
-        all.extend(trend(law, (own, here), plan.recordings.len() > 1));
-        fitted = rest;
-    }
+    all.extend(trends(plan, law, fit));
     all
 }
 
@@ -93,39 +90,71 @@ fn stick_slip(law: &LawToFit, value: &dyn Fn(&str) -> Option<f64>) -> Option<Str
     })
 }
 
-/// Residuals that follow a straight line in the displacement, by least squares with the error of their autoregression.
-fn trend(
-    law: &LawToFit,
-    (recording, fitted): (&Recording, &[f64]),
-    several: bool,
-) -> Option<String> {
-    let is_known = law.free().iter().any(|free| free.name == DRIFT);
-    let record = &recording.record;
-    let count = record.times.len() as f64;
-    let mean = record.displacement.iter().sum::<f64>() / count;
-    let along = record.displacement.iter().map(|x| x - mean);
-    let along = nalgebra::DMatrix::from_iterator(record.times.len(), 1, along);
-    let residuals = record.friction.iter().zip(fitted);
-    let residuals: Vec<f64> = residuals.map(|(measured, made)| measured - made).collect();
-    let spread = along.norm_squared();
-    if is_known || spread <= 0.0 {
-        return None;
+/// Straight lines in the displacement of a record that would be found beside all that is fitted.
+fn trends(plan: &FitPlan, law: &LawToFit, fit: &Fit) -> Vec<String> {
+    if law.free().iter().any(|free| free.name == DRIFT) {
+        return Vec::new();
     }
-    let together: f64 = along.iter().zip(&residuals).map(|(x, r)| x * r).sum();
-    let slope = together / spread;
-    let beside = residuals.iter().zip(along.iter());
-    let beside: Vec<f64> = beside.map(|(r, x)| r - slope * x).collect();
-    let error = Autoregression::of(&beside).covariance_of(&along)[(0, 0)].sqrt() / spread;
-    let is_certain = error.is_finite() && slope.abs() > CERTAIN * error;
-    is_certain.then(|| {
-        let of = match several {
-            true => format!(" of {}", recording.name()),
-            false => String::new(),
+    let found = law.with_problem(plan, &plan.pieces(), &mut Trends(fit));
+    let each = plan.recordings.iter().zip(found.unwrap_or_default());
+    let certain = each.filter(|(_, (slope, error))| slope.abs() > CERTAIN * error);
+    let told = certain.map(|(own, (slope, error))| {
+        let of = match plan.recordings.len() {
+            1 => String::new(),
+            _ => format!(" of {}", own.name()),
         };
         format!(
             "the residuals{of} follow a straight line of {} ± {} per metre of displacement: add drift to `free`",
             in_digits(slope, 2),
             in_digits(error, 2)
         )
-    })
+    });
+    told.collect()
+}
+
+/// The slope of such a line in each record and its standard error, by one linear step from the fit, with the noise as the residuals are then. A
+/// slope that is not known has an infinite error.
+struct Trends<'a>(&'a Fit);
+
+impl WithProblem for Trends<'_> {
+    type Output = Vec<(f64, f64)>;
+    fn call<const N: usize>(&mut self, problem: &Problem<'_, N>) -> Result<Self::Output> {
+        let (fitted, mut slopes) = problem.response(&self.0.variables)?;
+        for mut column in slopes.column_iter_mut() {
+            let norm = column.norm();
+            column /= if norm > 0.0 { norm } else { 1.0 };
+        }
+        let Some(inverse) = slopes.tr_mul(&slopes).cholesky() else {
+            return Ok(Vec::new());
+        };
+        // What the parameters of the fit cannot follow.
+        let beside = |all: DVector<f64>| {
+            let followed = inverse.solve(&slopes.tr_mul(&all));
+            all - &slopes * followed
+        };
+        let records = problem.records.iter().map(|one| one.record);
+        let measured = records.clone().flat_map(|record| &record.friction);
+        let residuals = measured.zip(&fitted).map(|(own, made)| own - made);
+        let residuals = beside(DVector::from_iterator(fitted.len(), residuals));
+        let mut begin = 0;
+        let of = |record: &Record| {
+            let rows = begin..begin + record.times.len();
+            begin = rows.end;
+            let mut along = DVector::zeros(fitted.len());
+            let mut own = along.rows_mut(rows.start, rows.len());
+            own.copy_from_slice(&record.displacement);
+            let along = beside(along);
+            let spread = along.norm_squared();
+            let slope = along.dot(&residuals) / spread;
+            let left = &residuals - &along * slope;
+            let noise = Autoregression::of(&left.as_slice()[rows.clone()]);
+            let own = DMatrix::from_column_slice(rows.len(), 1, &along.as_slice()[rows]);
+            let error = noise.covariance_of(&own)[(0, 0)].sqrt() / spread;
+            match slope.is_finite() && error.is_finite() {
+                true => (slope, error),
+                false => (0.0, f64::INFINITY),
+            }
+        };
+        Ok(records.map(of).collect())
+    }
 }

@@ -90,7 +90,7 @@ pub fn picture_of_look(look: &Look) -> Drawing {
     if let Some(moved) = &look.measured.displacement {
         let along: Vec<f64> = moved.iter().map(|x| (x - moved[0]) * MICRO).collect();
         let at = |t: f64| along[times.partition_point(|&own| own < t).min(along.len() - 1)];
-        let title = "the same, with the velocities of the load point in µm/s";
+        let title = "the same, with velocities in µm/s";
         let mut second = panel(title, "load-point displacement [µm]", &along);
         second.notes = velocities(look, &at, span.0);
         all.push(marked(second, look, (span.0 - 2.0 * margin, span.1), &at));
@@ -143,18 +143,19 @@ fn velocities(look: &Look, at: &dyn Fn(f64) -> f64, height: f64) -> Vec<Note> {
 }
 
 /// The least and the largest value of each part of a long record, all of a short one: the picture is the same.
-fn outline(times: &[f64], values: &[f64]) -> (Vec<f64>, Vec<f64>) {
-    let length = values.len().div_ceil(PARTS);
-    if length <= 2 {
-        return (times.to_vec(), values.to_vec());
+fn outline(along: &[f64], values: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let (first, last) = (along[0], along[along.len() - 1]);
+    let width = (last - first).abs() / PARTS as f64;
+    if values.len() <= 2 * PARTS || width <= 0.0 {
+        return (along.to_vec(), values.to_vec());
     }
-    let ends = |(i, part): (usize, &[f64])| {
-        let by = |one: &&f64, other: &&f64| one.total_cmp(other);
-        let place = |x: &f64| part.iter().position(|own| own == x).unwrap_or(0) + i * length;
-        let low = part.iter().min_by(by).map(place).unwrap_or(i * length);
-        let high = part.iter().max_by(by).map(place).unwrap_or(i * length);
-        [low.min(high), low.max(high)]
-    };
-    let places = values.chunks(length).enumerate().flat_map(ends);
-    places.map(|at| (times[at], values[at])).unzip()
+    let points: Vec<(f64, f64)> = along.iter().copied().zip(values.iter().copied()).collect();
+    let part = |x: f64| ((x - first) / width).floor();
+    let parts = points.chunk_by(|one, other| part(one.0) == part(other.0));
+    let ends = parts.flat_map(|part| {
+        let by = |one: &&(f64, f64), other: &&(f64, f64)| one.1.total_cmp(&other.1);
+        let ends = [part.iter().min_by(by), part.iter().max_by(by)];
+        ends.into_iter().flatten().take(part.len()).copied()
+    });
+    ends.unzip()
 }

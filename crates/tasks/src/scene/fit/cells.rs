@@ -84,7 +84,11 @@ impl<'a> Iterator for Cells<'a> {
         let end = rest.as_bytes().iter().position(ends);
         let cell = end.map_or(rest, |end| &rest[..end]);
         self.rest = end.map(|end| &rest[end + 1..]);
-        Some(cell.trim().trim_matches('"').trim())
+        let cell = cell.trim();
+        match cell.as_bytes() {
+            [b'"', ..] | [.., b'"'] => Some(cell.trim_matches('"').trim()),
+            _ => Some(cell),
+        }
     }
 }
 
