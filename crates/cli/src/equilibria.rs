@@ -20,8 +20,10 @@ pub fn run(options: &EquilibriaOptions, call: &Call) -> Result<Ending> {
         return many_equilibria::run(options, call);
     }
     let slab = &options.model.slab;
-    let clusters = slab.has_clusters() && slab.text.system.is_none();
-    if !clusters && let Some(model) = TextModel::of(&options.model, &[])? {
+    let of_formulas = slab.needs_formulas(&[])? || !slab.has_clusters();
+    if (of_formulas || slab.text.system.is_some())
+        && let Some(model) = TextModel::of(&options.model, &[])?
+    {
         return text::equilibria::run(options, model, call);
     }
     plan(options, call)

@@ -27,6 +27,7 @@ use crate::orbit::{
     ContinuationPoint, ParametrisedField, ShootingNodes, TestFunction, WithinCluster,
 };
 use nalgebra::Complex;
+use std::cmp::Ordering;
 use std::ops::ControlFlow;
 
 /// Points nearer to each other than this, in units of 1 + |x|, are one; so are orbits whose coordinates, and ln T, differ by less.
@@ -67,8 +68,8 @@ pub struct GeneralSystem<'a> {
     pub alike: Option<&'a dyn ParametrisedField>,
     /// For two equal parts, the family in variables that keep the digits of their difference.
     pub difference: Option<&'a dyn ParametrisedField>,
-    /// Groups of variables whose exchange changes nothing: solutions that are mirror images of each other are one.
-    pub interchangeable: &'a [Vec<usize>],
+    /// Groups of parts, each by its variables, whose exchange changes nothing: solutions that are mirror images of each other are one.
+    pub interchangeable: &'a [Vec<Vec<usize>>],
     /// The names of the parameters, by which fields know their derivatives.
     pub names: [&'a str; 2],
     /// Where branches of equilibria begin.
@@ -262,29 +263,38 @@ impl GeneralSystem<'_> {
         }
     }
 
-    /// One of a solution and its mirror images, the same whichever is given: numbers of interchangeable variables in ascending order.
+    /// One of a solution and its mirror images, the same whichever is given: numbers of interchangeable parts in ascending order.
     pub(super) fn representative(&self, numbers: &Vector) -> Vector {
         let mut representative = numbers.clone();
         for group in self.interchangeable {
-            let mut sorted: Vec<f64> = group.iter().map(|&i| numbers[i]).collect();
-            sorted.sort_by(f64::total_cmp);
-            for (&i, x) in group.iter().zip(sorted) {
-                representative[i] = x;
+            let of_part = |part: &Vec<usize>| part.iter().map(|&i| numbers[i]).collect();
+            let mut sorted: Vec<Vec<f64>> = group.iter().map(of_part).collect();
+            sorted.sort_by(|one, other| {
+                let pairs = one.iter().zip(other);
+                let each = pairs.map(|(x, y)| x.total_cmp(y));
+                each.fold(Ordering::Equal, Ordering::then)
+            });
+            for (part, numbers) in group.iter().zip(sorted) {
+                for (&i, x) in part.iter().zip(numbers) {
+                    representative[i] = x;
+                }
             }
         }
         representative
     }
 
-    /// Whether a branch that has come from one point to another has its own mirror image before it: just two interchangeable variables, which
+    /// Whether a branch that has come from one point to another has its own mirror image before it: just two interchangeable parts, which
     /// differed, have become equal.
     fn mirrors(&self, from: &Vector, here: &Vector) -> bool {
-        let equal =
-            |x: &Vector, i: usize, j: usize| (x[i] - x[j]).abs() < SAME * (1.0 + x[i].abs());
+        let equal = |x: &Vector, one: &[usize], other: &[usize]| {
+            let same = |(&i, &j): (&usize, &usize)| (x[i] - x[j]).abs() < SAME * (1.0 + x[i].abs());
+            one.iter().zip(other).all(same)
+        };
         let pairs = self.interchangeable.iter().flat_map(|group| {
             let firsts = group.iter().enumerate();
-            firsts.flat_map(|(k, &i)| group[k + 1..].iter().map(move |&j| (i, j)))
+            firsts.flat_map(|(k, one)| group[k + 1..].iter().map(move |other| (one, other)))
         });
-        let met = pairs.filter(|&(i, j)| equal(here, i, j) && !equal(from, i, j));
+        let met = pairs.filter(|(one, other)| equal(here, one, other) && !equal(from, one, other));
         met.count() == 1
     }
 }

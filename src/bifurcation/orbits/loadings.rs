@@ -81,7 +81,7 @@ pub(super) fn with_system<R>(
     let whole = whole(slab);
     let both = slab.interfaces == 2;
     let interchangeable = match both {
-        true => vec![vec![1, 2]],
+        true => vec![vec![vec![1], vec![2]]],
         false => Vec::new(),
     };
     let place = along.place();

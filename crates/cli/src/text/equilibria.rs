@@ -10,8 +10,8 @@ use twinslip::error::Result;
 use twinslip::number::Interval;
 use twinslip_output::Format;
 use twinslip_tasks::scene::{
-    Described, EquilibriaOptions, SearchPlace, TextEquilibria, TextEquilibriaPlan, TextEquilibrium,
-    TextModel,
+    Described, EquilibriaOptions, Quantity, SearchPlace, TextEquilibria, TextEquilibriaPlan,
+    TextEquilibrium, TextModel,
 };
 use twinslip_tasks::views;
 
@@ -87,34 +87,51 @@ fn write(report: &Report<'_>, plan: &TextEquilibriaPlan, found: &TextEquilibria)
 
 /// The ends of a box by the names of the states.
 fn ends(model: &TextModel, part: &[Interval]) -> Map<String, Value> {
-    let states = model.system.states().iter().zip(part);
-    let pair = |(name, x): (&&str, &Interval)| ((*name).to_owned(), json!([x.lo(), x.hi()]));
+    let states = model.system.states().iter().zip(part).enumerate();
+    let pair = |(i, (name, x)): (usize, (&&str, &Interval))| {
+        let outward = |x| model.units().outward(model.quantity(i), x);
+        (
+            (*name).to_owned(),
+            json!([outward(x.lo()), outward(x.hi())]),
+        )
+    };
     states.map(pair).collect()
 }
 
 fn object(found: &TextEquilibrium, model: &TextModel) -> Value {
     let states = model.system.states().iter().zip(&found.state);
+    let units = model.units();
     let mut all = Map::new();
-    for (name, x) in states {
+    for (i, (name, x)) in states.enumerate() {
+        let x = units.outward_uncertain(model.quantity(i), *x);
         all.insert(
             (*name).to_owned(),
             twinslip_output::uncertain((x.value, x.uncertainty)),
         );
     }
     if model.slab.is_some() {
-        let psi: Vec<f64> = found.state[1..].iter().map(|w| w.value.exp()).collect();
+        let rates = found.slip_rate.iter();
+        let rates: Vec<f64> = rates
+            .map(|v| units.outward(Quantity::SlipRate, *v))
+            .collect();
+        let psi = found.state[1..=rates.len()].iter();
+        let psi: Vec<f64> = psi
+            .map(|w| units.outward(Quantity::State, w.value.exp()))
+            .collect();
         all.insert("state".into(), json!(psi));
-        all.insert("slip_rate".into(), json!(found.slip_rate));
+        all.insert("slip_rate".into(), json!(rates));
     }
+    let growth = |x: f64| units.outward(Quantity::Growth, x);
     let eigenvalues = found.stability.eigenvalues.iter();
     all.insert(
         "eigenvalues".into(),
-        eigenvalues.map(|z| json!([z.re, z.im])).collect(),
+        eigenvalues
+            .map(|z| json!([growth(z.re), growth(z.im)]))
+            .collect(),
     );
-    all.insert(
-        "eigenvalue_uncertainty".into(),
-        json!(found.stability.uncertainty),
-    );
+    let uncertainty = found.stability.uncertainty.iter();
+    let uncertainty: Vec<f64> = uncertainty.map(|x| growth(*x)).collect();
+    all.insert("eigenvalue_uncertainty".into(), json!(uncertainty));
     all.insert("unstable".into(), json!(found.stability.unstable()));
     all.insert("verdict".into(), json!(found.stability.verdict.name()));
     all.insert("residual".into(), json!(found.residual));

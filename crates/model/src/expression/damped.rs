@@ -1,6 +1,6 @@
-//! Radiation damping of a slip rate that is given as a formula: tau - eta v stands in the place of tau.
+//! A slip rate that is given as a formula solved for the stress, and with radiation damping: tau - eta v stands in the place of tau.
 //!
-//! v is then defined by an equation. Where the formula is w s(k tau), with s one of sinh and exp and with w and k that the stress does not
+//! With damping v is defined by an equation. Where the formula is w s(k tau), with s one of sinh and exp and with w and k that the stress does not
 //! change, as those of rate-and-state laws are, that is y + g(y) = k tau of y = k (tau - eta v) and g(y) = k eta v = (k eta w) s(y): see
 //! [`crate::number::Balance`].
 
@@ -30,22 +30,7 @@ impl Expressions {
     /// [`crate::error::Error::Input`] where there are too many operations.
     pub fn damped(&self, damping: usize) -> Result<Option<Expressions>> {
         let mut builder = Builder::default();
-        let one = builder.number(1.0)?;
-        let mut places: Vec<Place> = Vec::with_capacity(self.operations.len());
-        let mut depends: Vec<Dependence> = Vec::with_capacity(self.operations.len());
-        for operation in &self.operations {
-            let place = builder.place(operation.moved(|place| places[place]))?;
-            let of = |operand: Place| (places[operand], depends[operand]);
-            depends.push(match *operation {
-                Operation::Variable(0) => Linear(one, None),
-                operation => dependence(&mut builder, operation, of)?,
-            });
-            places.push(place);
-        }
-        let [output] = self.outputs[..] else {
-            return Ok(None);
-        };
-        let Activated(factor, activation, slope) = depends[output] else {
+        let Some((factor, activation, slope)) = self.activated(&mut builder)? else {
             return Ok(None);
         };
         let (stress, damping) = (builder.variable(0)?, builder.parameter(damping)?);
@@ -55,6 +40,50 @@ impl Expressions {
         let radiated = builder.place(Operation::Balanced(argument, rate, activation))?;
         let slip_rate = builder.binary(Binary::Quotient, radiated, drop)?;
         Ok(Some(builder.complete(vec![slip_rate])))
+    }
+
+    /// The stress at which the slip rate, which is the one formula here and has the stress as its first variable, is the first variable: s^-1(v/w)/k;
+    /// `None` where it is not a factor times sinh or exp of a multiple of the stress.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::Input`] where there are too many operations.
+    pub fn stress(&self) -> Result<Option<Expressions>> {
+        let mut builder = Builder::default();
+        let Some((factor, activation, slope)) = self.activated(&mut builder)? else {
+            return Ok(None);
+        };
+        let v = builder.variable(0)?;
+        let ratio = builder.binary(Binary::Quotient, v, factor)?;
+        let inverse = match activation {
+            Activation::Sinh => Function::Asinh,
+            Activation::Exponential => Function::Ln,
+        };
+        let argument = builder.call(inverse, &[ratio])?;
+        let stress = builder.binary(Binary::Quotient, argument, slope)?;
+        Ok(Some(builder.complete(vec![stress])))
+    }
+
+    /// w, s and k of the one formula w s(k tau); `None` where it is none of these.
+    fn activated(&self, builder: &mut Builder) -> Result<Option<(Place, Activation, Place)>> {
+        let one = builder.number(1.0)?;
+        let mut places: Vec<Place> = Vec::with_capacity(self.operations.len());
+        let mut depends: Vec<Dependence> = Vec::with_capacity(self.operations.len());
+        for operation in &self.operations {
+            let place = builder.place(operation.moved(|place| places[place]))?;
+            let of = |operand: Place| (places[operand], depends[operand]);
+            depends.push(match *operation {
+                Operation::Variable(0) => Linear(one, None),
+                operation => dependence(builder, operation, of)?,
+            });
+            places.push(place);
+        }
+        Ok(match self.outputs[..] {
+            [output] => match depends[output] {
+                Activated(factor, activation, slope) => Some((factor, activation, slope)),
+                _ => None,
+            },
+            _ => None,
+        })
     }
 }
 

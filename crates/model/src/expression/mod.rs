@@ -177,6 +177,11 @@ impl Expressions {
         values
     }
 
+    /// Whether the i-th variable is named.
+    pub fn names_variable(&self, i: usize) -> bool {
+        self.operations.contains(&Operation::Variable(i))
+    }
+
     /// How many formulas there are.
     pub fn count(&self) -> usize {
         self.outputs.len()

@@ -76,7 +76,8 @@ impl TextSystem {
         })
     }
 
-    /// The same of interfaces that slide, one or two, with their slip rates in the same states and parameters.
+    /// The same of interfaces that slide, with their slip rates in the same states and parameters. Where there is a rate more than there are
+    /// states the last one is of time, as of [`TextSystem::in_time`].
     ///
     /// # Errors
     /// As of [`TextSystem::new`].
@@ -85,9 +86,13 @@ impl TextSystem {
         states: &[&str],
         parameters: &[(&str, f64)],
     ) -> Result<Self> {
+        let system = match rates.count() > states.len() {
+            true => Self::in_time(rates, states, parameters)?,
+            false => Self::new(rates, states, parameters)?,
+        };
         Ok(TextSystem {
             slip_rates: Some(Arc::new(slip_rates)),
-            ..Self::new(rates, states, parameters)?
+            ..system
         })
     }
 

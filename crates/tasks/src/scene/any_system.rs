@@ -8,7 +8,7 @@ use super::options::{ModelOptions, NumericsOptions};
 use super::plan::{self, STEADY_START, USUAL_START};
 use super::program::{Program, Stretch};
 use super::system::{Described, System};
-use super::text::TextModel;
+use super::text::{StateLayout, TextModel, TextSlab};
 use super::units::{Quantity, Units};
 use serde_json::{Map, Value, json};
 use std::borrow::Cow;
@@ -32,8 +32,8 @@ enum Kind {
     Formulas(Arc<TextModel>),
 }
 
-/// The slip rate of an interface at values of all states.
-pub(super) type SlipRate = Arc<dyn Fn(usize, &[f64]) -> f64 + Send + Sync>;
+/// The slip rate of an interface at values of all states and a time.
+pub(super) type SlipRate = Arc<dyn Fn(usize, &[f64], f64) -> f64 + Send + Sync>;
 
 impl AnySystem {
     /// The system that the options describe, for commands that take no time in formulas.
@@ -60,8 +60,7 @@ impl AnySystem {
         program: Option<&Program>,
     ) -> Result<Self> {
         let kind = match (formulas, program) {
-            (Some(model), program) => {
-                let mut model = model.without_units()?;
+            (Some(mut model), program) => {
                 if let Some(program) = program {
                     model.programmed(program)?;
                 }
@@ -129,10 +128,22 @@ impl AnySystem {
 
     /// The quantity that a state measures.
     pub fn quantity(&self, state: usize) -> Quantity {
-        match (self.slides(), state) {
-            (false, _) => Quantity::Number,
-            (true, 0) => Quantity::Stress,
-            (true, _) => Quantity::LogState,
+        match (self.formulas(), state) {
+            (Some(model), _) => model.quantity(state),
+            (None, 0) => Quantity::Stress,
+            (None, _) => Quantity::LogState,
+        }
+    }
+
+    /// Which variables interfaces have; `None` of what is no interface.
+    pub(super) fn layout(&self) -> Option<StateLayout> {
+        match &self.0 {
+            Kind::BuiltIn(system, _) => Some(StateLayout {
+                parts: system.interfaces,
+                states: 1,
+                mass: false,
+            }),
+            Kind::Formulas(model) => model.slab.as_ref().map(TextSlab::layout),
         }
     }
 
@@ -197,14 +208,20 @@ impl AnySystem {
         match &self.0 {
             Kind::BuiltIn(system, _) => {
                 let laws = system.laws();
-                Arc::new(move |i, y| {
+                Arc::new(move |i, y, _| {
                     let law = &laws[i];
                     law.slip_rate(law.activation(y[0]), y[i + 1].exp())
                 })
             }
             Kind::Formulas(model) => {
                 let model = Arc::clone(model);
-                Arc::new(move |i, y| model.system.slip_rates(y)[i])
+                Arc::new(move |i, y, time| match model.system.is_timed() {
+                    true => {
+                        let all: Vec<f64> = y.iter().copied().chain([time]).collect();
+                        model.system.slip_rates(&all)[i]
+                    }
+                    false => model.system.slip_rates(y)[i],
+                })
             }
         }
     }

@@ -200,6 +200,7 @@ fn many_and_equal(model: &ModelOptions) -> Result<bool> {
         && slab.clusters.is_none()
         && slab.text.system.is_none()
         && slab.law_file().is_none()
+        && !slab.needs_formulas(&[])?
         && !slab.sets_one_interface()?)
 }
 

@@ -9,7 +9,7 @@ use super::units::Quantity;
 pub struct Instant {
     /// Time.
     pub time: f64,
-    /// The values of all states: of interfaces tau, and ln psi of each.
+    /// The values of all states: of interfaces tau, ln psi of each, and what else they have.
     pub state: Vec<f64>,
     /// Slip of each interface since the start; none of what is no interface.
     pub slip: Vec<f64>,
@@ -30,7 +30,11 @@ pub fn run_columns(system: &AnySystem) -> Vec<Column<Instant>> {
         }));
         return columns;
     }
-    let interfaces = system.clusters().len();
+    let Some(layout) = system.layout() else {
+        return columns;
+    };
+    let interfaces = layout.parts;
+    let second = if layout.states > 1 { interfaces } else { 0 };
     let each = |name: &'static str, quantity, entry: fn(&Instant, usize) -> f64, meaning| {
         (0..interfaces).map(move |i| {
             let entry = move |at: &Instant| entry(at, i).into();
@@ -51,9 +55,31 @@ pub fn run_columns(system: &AnySystem) -> Vec<Column<Instant>> {
         |at, i| at.state[i + 1],
         "ln ψ of interface i",
     ));
+    // The second state variables stand behind the first ones.
+    let offset = 1 + interfaces;
+    for (name, quantity, meaning) in [
+        (
+            "second_state",
+            State,
+            "second state variable ψ of interface i",
+        ),
+        (
+            "log_second_state",
+            LogState,
+            "ln of the second state variable of interface i",
+        ),
+    ] {
+        columns.extend((0..second).map(|i| {
+            let entry = move |at: &Instant| {
+                let w = at.state[offset + i];
+                if quantity == State { w.exp() } else { w }.into()
+            };
+            Column::new(format!("{name}_{}", i + 1), quantity, entry).meaning(meaning)
+        }));
+    }
     columns.extend((0..interfaces).map(|i| {
         let slip_rate = system.slip_rate();
-        let entry = move |at: &Instant| slip_rate(i, &at.state).into();
+        let entry = move |at: &Instant| slip_rate(i, &at.state, at.time).into();
         Column::new(format!("slip_rate_{}", i + 1), SlipRate, entry)
             .meaning("slip rate of interface or cluster i")
     }));

@@ -92,6 +92,29 @@ pub struct SlabOptions {
     /// Radiation damping eta V*/(a sigma): tau - eta v stands in place of tau in the law [default: 0; eta in Pa s/m with --si]
     #[arg(long, value_name = "ETA", value_parser = number, allow_negative_numbers = true, conflicts_with_all = ["shear_modulus", "shear_wave_speed"])]
     pub damping: Option<f64>,
+    /// Evolution effect b2 of a second state variable, which may be negative: tau gains b2 ln(theta_2 V*/L2)/a, and theta_2 evolves by the
+    /// law with L2. Needs --second-slip-length
+    #[arg(long, value_name = "b2", value_parser = number, allow_negative_numbers = true)]
+    pub second_evolution_effect: Option<f64>,
+    /// Slip length L2 of the second state variable [L; m with --si]
+    #[arg(long, value_name = "L2", value_parser = number, allow_negative_numbers = true)]
+    pub second_slip_length: Option<f64>,
+    /// Mass m of an interface per area, m V*^2/(a sigma L): m dv/dt is the stress less the friction at v, and v a variable of its own
+    /// [default: 0, without inertia; m in kg/m^2 with --si]
+    #[arg(long, value_name = "m", value_parser = number, allow_negative_numbers = true)]
+    pub mass: Option<f64>,
+    /// Let driving or normal_stress vary, as its value times 1 + EPS cos(2 pi (t/PERIOD + PHASE)); repeatable. For integrate, and for solve_ivp
+    /// in Python
+    #[arg(
+        long,
+        value_name = "NAME=EPS:PERIOD[:PHASE]",
+        allow_hyphen_values = true
+    )]
+    pub modulate: Vec<String>,
+    /// Coefficient alpha of Linker and Dieterich (1992), for a normal stress sigma that varies: dtheta/dt has the term -(alpha theta/b)
+    /// (dsigma/dt)/sigma [default: 0]
+    #[arg(long, value_name = "alpha", value_parser = number, allow_negative_numbers = true)]
+    pub normal_stress_coupling: Option<f64>,
     /// All input and output in SI units; implied by a value with a unit, such as 10um, 50MPa, 1nm/s or 500year
     #[arg(long, help_heading = "SI units")]
     pub si: bool,

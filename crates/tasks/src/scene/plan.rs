@@ -324,6 +324,7 @@ pub(super) fn dimension_in_words(system: &AnySystem, subspace: Subspace, start: 
 /// The absolute tolerance in words, where it follows the states and where it is one number for all.
 pub(super) fn tolerance_in_words(system: &AnySystem, atol: f64, told: &Value) -> String {
     let of = match (system.slides(), told.is_array()) {
+        (true, _) if system.layout().is_some_and(|all| all.has_more()) => "on every variable",
         (true, _) => "on (tau, ln psi)",
         (false, true) => "of the range of each state so far",
         (false, false) => "on every state",

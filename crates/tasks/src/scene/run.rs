@@ -208,7 +208,8 @@ pub(super) fn along(
         };
         if equations.has_driving(count) {
             here = here.push(stretch.driving.0);
-        } else if equations.is_timed() {
+        }
+        if equations.is_timed() {
             here = here.push(stretch.span.0);
         }
         let (end, stopped) = by(&part, here)?;

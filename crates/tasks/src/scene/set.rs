@@ -2,12 +2,13 @@
 
 use super::options::{ModelOptions, SlabOptions};
 use super::system::{HEALING_TIME, NORMAL_STRESS, REFERENCE_RATE, SLIP_LENGTH};
+use super::text::{MASS, NORMAL_STRESS_COUPLING, SECOND_EVOLUTION_EFFECT, SECOND_SLIP_LENGTH};
 use super::unequal::{is_of_one, of_one};
 use twinslip::error::{Error, Result};
 use twinslip::friction::{AnyLaw, Law, Parameters};
 
 /// The names of the parameters that interfaces have, V_H and K first.
-pub(super) const NAMES: [&str; 10] = [
+pub(super) const NAMES: [&str; 14] = [
     "driving",
     "stiffness",
     "damping",
@@ -18,6 +19,10 @@ pub(super) const NAMES: [&str; 10] = [
     "reference_friction",
     "slip_length",
     "normal_stress",
+    SECOND_EVOLUTION_EFFECT,
+    SECOND_SLIP_LENGTH,
+    MASS,
+    NORMAL_STRESS_COUPLING,
 ];
 
 /// The names and values.
@@ -101,6 +106,10 @@ impl SlabOptions {
             "reference_friction" => self.reference_friction,
             "slip_length" => self.slip_length,
             "normal_stress" => self.normal_stress,
+            SECOND_EVOLUTION_EFFECT => self.second_evolution_effect,
+            SECOND_SLIP_LENGTH => self.second_slip_length,
+            MASS => self.mass,
+            NORMAL_STRESS_COUPLING => self.normal_stress_coupling,
             _ => None,
         }
         .is_some()
@@ -157,6 +166,10 @@ impl SlabOptions {
             "reference_friction" => put_in(&mut self.reference_friction, name, value),
             "slip_length" => put_in(&mut self.slip_length, name, value),
             "normal_stress" => put_in(&mut self.normal_stress, name, value),
+            SECOND_EVOLUTION_EFFECT => put_in(&mut self.second_evolution_effect, name, value),
+            SECOND_SLIP_LENGTH => put_in(&mut self.second_slip_length, name, value),
+            MASS => put_in(&mut self.mass, name, value),
+            NORMAL_STRESS_COUPLING => put_in(&mut self.normal_stress_coupling, name, value),
             _ => Err(Error::no_parameter("set", name, &NAMES)),
         }
     }

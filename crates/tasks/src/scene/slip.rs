@@ -26,14 +26,20 @@ pub(super) struct SlipRates {
     subspace: Subspace,
     /// How many interfaces each stands for.
     counts: Vec<usize>,
+    /// How many variables there are.
+    variables: usize,
 }
 
 impl SlipRates {
     pub fn of(system: &AnySystem, subspace: Subspace) -> Self {
         SlipRates {
             of: system.slip_rate(),
-            subspace,
             counts: system.clusters().to_vec(),
+            variables: match subspace {
+                Subspace::Whole => system.states().len(),
+                Subspace::Symmetric => 2,
+            },
+            subspace,
         }
     }
 
@@ -47,15 +53,12 @@ impl SlipRates {
         &self.counts
     }
 
-    /// Each of them, at variables that begin with those of the subspace.
+    /// Each of them, at variables that begin with those of the subspace, and end with time where that is one.
     pub fn each(&self, y: &[f64]) -> impl Iterator<Item = f64> {
-        let variables = match self.subspace {
-            Subspace::Whole => self.counts.len() + 1,
-            Subspace::Symmetric => 2,
-        };
-        let mut states = Vec::with_capacity(self.counts.len() + 1);
-        self.subspace.whole(&y[..variables], &mut states);
-        (0..self.counts.len()).map(move |i| (self.of)(i, &states))
+        let mut states = Vec::with_capacity(self.variables + 1);
+        self.subspace.whole(&y[..self.variables], &mut states);
+        let time = y[y.len() - 1];
+        (0..self.counts.len()).map(move |i| (self.of)(i, &states, time))
     }
 
     /// Their sum over all interfaces.

@@ -207,6 +207,11 @@ impl System {
                 options.law_told()
             )));
         }
+        if options.needs_formulas(&[])? {
+            return Err(Error::Input(
+                "`second_evolution_effect`, `second_slip_length`, `mass` and `modulate`: this command takes interfaces with one state variable, without mass and under a constant normal stress; law, integrate, equilibria, section, orbit, branch, locus and sweep of up to 7 interfaces take the first three, integrate the last".into(),
+            ));
+        }
         let of_one = OfOne::read(options)?;
         let first = of_one.first(options);
         let own = [0, 1].map(|i| of_one.constants(i, common(options, &first)));

@@ -22,6 +22,10 @@ pub enum Quantity {
     State,
     /// ln psi.
     LogState,
+    /// ln v.
+    LogSlipRate,
+    /// Mass of an interface per area.
+    Mass,
     /// Stiffness K.
     Stiffness,
     /// An eigenvalue.
@@ -43,7 +47,9 @@ impl Quantity {
             "stiffness" => Quantity::Stiffness,
             "damping" => Quantity::Damping,
             "healing_time" => Quantity::HealingTime,
-            "slip_length" => Quantity::Length,
+            "slip_length" | "second_slip_length" => Quantity::Length,
+            "mass" => Quantity::Mass,
+            "driving_period" | "normal_stress_period" => Quantity::Time,
             "normal_stress" => Quantity::NormalStress,
             _ => Quantity::Number,
         }
@@ -180,8 +186,9 @@ impl Units {
             Quantity::Growth => 1.0 / self.time,
             Quantity::Damping => scales.stress / scales.slip_rate,
             Quantity::NormalStress => scales.stress / scales.friction,
+            Quantity::Mass => scales.stress * scales.time / scales.slip_rate,
             Quantity::State if self.state_is_time => self.time,
-            Quantity::State | Quantity::LogState | Quantity::Number => 1.0,
+            Quantity::State | Quantity::LogState | Quantity::LogSlipRate | Quantity::Number => 1.0,
         }
     }
 
@@ -195,6 +202,7 @@ impl Units {
     pub fn outward(&self, quantity: Quantity, x: f64) -> f64 {
         match quantity {
             Quantity::LogState => x + self.factor(Quantity::State).ln(),
+            Quantity::LogSlipRate => x + self.factor(Quantity::SlipRate).ln(),
             Quantity::Time if self.si() => {
                 let given = self.as_given(quantity, x);
                 given.unwrap_or(x * self.factor(quantity))
@@ -214,6 +222,7 @@ impl Units {
     pub fn inward(&self, quantity: Quantity, x: f64) -> f64 {
         match quantity {
             Quantity::LogState => x - self.factor(Quantity::State).ln(),
+            Quantity::LogSlipRate => x - self.factor(Quantity::SlipRate).ln(),
             _ => x / self.factor(quantity),
         }
     }
@@ -279,9 +288,11 @@ impl Units {
             Quantity::Damping => "a sigma/V*",
             Quantity::NormalStress if si => "Pa",
             Quantity::NormalStress => "sigma",
+            Quantity::Mass if si => "kg/m^2",
+            Quantity::Mass => "a sigma L/V*^2",
             Quantity::State if self.state_is_time && si => self.time_unit.name,
             Quantity::State if self.state_is_time => "L/V*",
-            Quantity::State | Quantity::LogState | Quantity::Number => "1",
+            Quantity::State | Quantity::LogState | Quantity::LogSlipRate | Quantity::Number => "1",
         }
     }
 

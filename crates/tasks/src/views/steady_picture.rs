@@ -4,8 +4,8 @@ use super::diagram::{axis_label, parameters, value};
 use super::many::nominal;
 use super::text::with_parameters;
 use crate::scene::{
-    ClassifiedEquilibrium, EquilibriaPlan, FoundManyEquilibrium, ManyEquilibriumPlan, Quantity,
-    TextEquilibrium, TextModel,
+    ClassifiedEquilibrium, Described, EquilibriaPlan, FoundManyEquilibrium, ManyEquilibriumPlan,
+    Quantity, TextEquilibrium, TextModel,
 };
 use nalgebra::Complex;
 use twinslip::equilibrium::Verdict;
@@ -80,24 +80,36 @@ pub fn picture_of_equilibria(
 /// Those of a system from a file: of interfaces as of built-in ones, else the second state against the first.
 pub fn picture_of_text_equilibria(model: &TextModel, found: &[TextEquilibrium]) -> Option<Drawing> {
     let states = model.system.states();
-    let slides = model.slab.is_some();
+    let (slides, units) = (model.slab.is_some(), model.units());
     let shown = |(i, one): (usize, &TextEquilibrium)| {
         let state = |i: usize| one.state[i].value;
         let (at, values) = match (slides, states.len()) {
-            (true, many) => (state(0), (1..many).map(|i| state(i).exp()).collect()),
+            (true, _) => {
+                let psi = (1..=one.slip_rate.len()).map(|i| {
+                    let w = units.outward(Quantity::LogState, state(i));
+                    w.exp()
+                });
+                (units.outward(Quantity::Stress, state(0)), psi.collect())
+            }
             (false, 1) => ((i + 1) as f64, vec![state(0)]),
             (false, _) => (state(0), vec![state(1)]),
         };
         Shown {
             at,
             values,
-            eigenvalues: one.stability.eigenvalues.clone(),
+            eigenvalues: {
+                let all = one.stability.eigenvalues.iter();
+                all.map(|z| z * units.factor(Quantity::Growth)).collect()
+            },
             verdict: Some(one.stability.verdict),
         }
     };
     let shown: Vec<Shown> = found.iter().enumerate().map(shown).collect();
     let (x, y) = match (slides, states) {
-        (true, _) => (Axis::linear("stress τ"), Axis::log("state ψ")),
+        (true, _) => (
+            Axis::linear(axis_label("stress τ", Quantity::Stress, units)),
+            Axis::log(axis_label("state ψ", Quantity::State, units)),
+        ),
         (false, [first, second, ..]) => (Axis::linear(*first), Axis::linear(*second)),
         (false, rest) => (
             Axis::linear("number of the equilibrium"),
@@ -106,7 +118,14 @@ pub fn picture_of_text_equilibria(model: &TextModel, found: &[TextEquilibrium]) 
     };
     let title = format!("equilibria of {}", with_parameters(model));
     let name = |i: usize| format!("interface {}", i + 1);
-    drawing(&shown, title, x, y, &name, "|Re λ|")
+    drawing(
+        &shown,
+        title,
+        x,
+        y,
+        &name,
+        &axis_label("|Re λ|", Quantity::Growth, units),
+    )
 }
 
 /// An entry of the legend: shape, whether it is filled, colour and words.

@@ -9,23 +9,30 @@ pub fn text_equilibria_columns(model: &TextModel) -> Vec<Column<TextEquilibrium>
     type Row = TextEquilibrium;
     let states = model.system.states().iter().enumerate();
     let mut columns: Vec<Column<Row>> = states
-        .map(|(i, name)| Column::uncertain(*name, Number, move |row: &Row| row.state[i].into()))
+        .map(|(i, name)| {
+            let value = move |row: &Row| row.state[i].into();
+            Column::uncertain(*name, model.quantity(i), value)
+        })
         .collect();
     let interfaces = model.slab.as_ref().map_or(0, |slab| slab.clusters().len());
     for (i, rate) in (1..=interfaces).enumerate() {
         let v = move |row: &Row| row.slip_rate.get(i).copied().into();
-        columns.push(Column::new(format!("slip_rate_{rate}"), Number, v));
+        columns.push(Column::new(
+            format!("slip_rate_{rate}"),
+            Quantity::SlipRate,
+            v,
+        ));
     }
     for i in 0..model.system.states().len() {
         let place = i + 1;
         let value = |row: &Row, i: usize| row.stability.eigenvalues.get(i).copied();
-        let [re, im] = Column::eigenvalue(i, Number, value);
+        let [re, im] = Column::eigenvalue(i, Quantity::Growth, value);
         let mut of_one = [
             re,
             im,
             Column::new(
                 format!("eigenvalue_uncertainty_{place}"),
-                Number,
+                Quantity::Growth,
                 move |row: &Row| row.stability.uncertainty.get(i).copied().into(),
             )
             .not_in_table(),

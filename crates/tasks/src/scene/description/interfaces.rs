@@ -147,8 +147,9 @@ impl Interfaces {
             }
             Interfaces::Closed(system) => system.interfaces,
             Interfaces::Formulas(model) => {
-                let slab = model.slab.as_ref();
-                slab.map_or(0, |slab| slab.clusters().len())
+                let names = model.system.states().iter().enumerate();
+                let each = names.map(|(i, name)| state((*name).to_owned(), model.quantity(i)));
+                return each.collect();
             }
         };
         let logs = (1..=each).map(|i| state(format!("log_state_{i}"), Quantity::LogState));
@@ -180,14 +181,21 @@ impl Interfaces {
         let symmetric = equal && (2..=MOST_INTERFACES).contains(&count);
         let parts = match self {
             Interfaces::Closed(system) => system.interfaces,
-            Interfaces::Formulas(model) => model.system.states().len() - 1,
+            Interfaces::Formulas(model) => {
+                let slab = model.slab.as_ref();
+                slab.map_or(0, |slab| slab.layout().parts)
+            }
+        };
+        let variables = match self {
+            Interfaces::Closed(system) => system.interfaces + 1,
+            Interfaces::Formulas(model) => model.system.states().len(),
         };
         let broken = [symmetric, symmetric && count == 2];
         match parts {
             _ if parts > MOST_INTERFACES => Vec::new(),
             _ if parts > MOST_APART => CurveChoice::of_equilibria(broken[0]),
             // A single one has one steady state.
-            _ => CurveChoice::of_system(parts + 1, parts > 1, broken),
+            _ => CurveChoice::of_system(variables, parts > 1, broken),
         }
     }
 }

@@ -134,7 +134,14 @@ pub fn symbol_of_state(name: &str) -> Option<String> {
     if name == "stress" {
         return Some("stress τ".to_owned());
     }
-    let symbols = [("log_state_", "ln ψ"), ("state_", "ψ"), ("slip_rate_", "v")];
+    let symbols = [
+        ("log_state_", "ln ψ"),
+        ("state_", "ψ"),
+        ("log_second_state_", "ln ψ'"),
+        ("second_state_", "ψ'"),
+        ("log_slip_rate_", "ln v"),
+        ("slip_rate_", "v"),
+    ];
     symbols.into_iter().find_map(|(prefix, symbol)| {
         let number: usize = name.strip_prefix(prefix)?.parse().ok()?;
         Some(format!("{symbol}_{number}"))

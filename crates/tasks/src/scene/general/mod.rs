@@ -80,10 +80,10 @@ pub trait Subject: Described + Sync {
         false
     }
 
-    /// The variables of equal parts, part by part: what differs by an exchange within one of these groups is one solution.
-    fn interchangeable(&self) -> Vec<Vec<usize>> {
+    /// Groups of equal parts, each by its variables: what differs by an exchange within one of these groups is one solution.
+    fn interchangeable(&self) -> Vec<Vec<Vec<usize>>> {
         if self.has_equal_parts() {
-            vec![vec![1, 2]]
+            vec![vec![vec![1], vec![2]]]
         } else {
             Vec::new()
         }

@@ -219,10 +219,12 @@ impl Subject for TextSubject {
     }
 
     fn always_told(&self) -> Vec<(&'static str, Quantity)> {
-        Vec::new()
+        let loading = ["driving", "stiffness"].map(|name| (name, Quantity::of_parameter(name)));
+        let slab = self.model.slab.as_ref();
+        slab.map_or(Vec::new(), |_| loading.to_vec())
     }
 
-    fn interchangeable(&self) -> Vec<Vec<usize>> {
+    fn interchangeable(&self) -> Vec<Vec<Vec<usize>>> {
         let slab = self.model.slab.as_ref();
         slab.map_or(Vec::new(), TextSlab::interchangeable)
     }
@@ -242,7 +244,8 @@ impl Subject for TextSubject {
         /// Of rows: tolerance of the flow, and what their nodes may be off.
         const ROUGH: (f64, f64) = (1e-8, 1e-6);
         const FINE: (f64, f64) = (1e-15, 1e-13);
-        let Some(slab) = &self.model.slab else {
+        let slab = self.model.slab.as_ref();
+        let Some(slab) = slab.filter(|slab| slab.has_clusters()) else {
             return Ok(Vec::new());
         };
         let names = self.model.system.parameter_names();
@@ -272,11 +275,7 @@ impl Subject for TextSubject {
 
     fn numbers(&self, kind: RowKind) -> Vec<(String, Quantity)> {
         let states = self.model.system.states().iter().enumerate();
-        let quantity = |place| match (&self.model.slab, place) {
-            (None, _) => Quantity::Number,
-            (Some(_), 0) => Quantity::Stress,
-            (Some(_), _) => Quantity::LogState,
-        };
+        let quantity = |place| self.model.quantity(place);
         match kind.orbits {
             true => states
                 .flat_map(|(place, name)| {

@@ -46,6 +46,11 @@ impl IvpPlan {
             return Err(Error::parameter(format!("start[{i}]"), start[i], "finite"));
         }
         let system = AnySystem::in_time(model, None)?;
+        if system.units().si() && system.layout().is_some_and(|all| all.mass) {
+            return Err(Error::Input(
+                "`si`: solve_ivp takes interfaces with `mass` without units alone; `integrate` has them".into(),
+            ));
+        }
         let chart = Chart::new(&system, Subspace::Whole);
         let from = Vector::from_vec(started(&chart, start, &names(&system))?);
         system.allowed(&from)?;

@@ -99,13 +99,18 @@ fn refused(slab: &SlabOptions) -> Result<()> {
         let index = name.rsplit('_').next().unwrap_or_default();
         !index.is_empty() && index.bytes().all(|c| c.is_ascii_digit())
     };
-    let asked: [(&str, bool, &str); 3] = [
+    let asked: [(&str, bool, &str); 4] = [
         (
             "law",
             slab.law_file().is_some(),
             "from a file can have at most 7 interfaces that move on their own",
         ),
         ("si", slab.si, "many interfaces are computed without units"),
+        (
+            "second_evolution_effect`, `second_slip_length`, `mass` and `modulate",
+            slab.needs_formulas(&[])?,
+            "many interfaces have one state variable, no mass and a constant normal stress; up to 7 may have these",
+        ),
         (
             "set",
             slab.text.set.iter().any(numbered),

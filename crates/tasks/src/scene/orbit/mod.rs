@@ -110,10 +110,15 @@ impl OrbitPlan {
 
     /// With its multipliers within clusters, by the method that it was found by.
     fn complete(&self, orbit: &mut Orbit, accuracy: &OrbitAccuracy) -> Result<()> {
-        match self.system.formulas() {
-            Some(model) => model.complete_orbit(orbit, accuracy),
-            None => Ok(()),
+        let Some(model) = self.system.formulas() else {
+            return Ok(());
+        };
+        if let Some(layout) = self.system.layout().filter(|all| all.has_more()) {
+            let states = (0..layout.parts).map(|part| layout.log_state(0, part));
+            let least = states.map(|place| orbit.extremes[place][0].value);
+            orbit.state_min = least.fold(f64::INFINITY, f64::min).exp();
         }
+        model.complete_orbit(orbit, accuracy)
     }
 
     /// The units in which the orbit is looked for.
@@ -218,10 +223,9 @@ impl OrbitPlan {
             return Some(orbit.symmetry);
         }
         let error = orbit.point_uncertainty;
-        let alike = |node: &Vec<f64>| {
-            let same = |w: &f64| (w - node[1]).abs() <= error * (1.0 + w.abs());
-            node.iter().skip(1).all(same)
-        };
+        let same = |x: f64, y: f64| (x - y).abs() <= error * (1.0 + x.abs());
+        let slab = self.system.formulas().and_then(|model| model.slab.as_ref());
+        let alike = |node: &Vec<f64>| slab.is_some_and(|slab| slab.move_alike(node, same));
         Some(
             match !self.system.differ() && orbit.nodes.iter().all(alike) {
                 true => Symmetry::Symmetric,

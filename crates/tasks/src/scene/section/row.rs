@@ -43,7 +43,10 @@ pub fn section_columns(system: &AnySystem) -> Vec<Column<SectionRow>> {
     let stress = usize::from(system.slides());
     for (i, name) in states.into_iter().enumerate().skip(stress) {
         let value = move |row: &Row| row.state[i].into();
-        columns.push(Column::new(name, system.quantity(i), value).meaning("ln ψ of interface i"));
+        columns.push(
+            Column::new(name, system.quantity(i), value)
+                .meaning(meaning_of_state(system.quantity(i))),
+        );
     }
     if !system.slides() {
         return columns;
@@ -69,6 +72,14 @@ pub fn section_columns(system: &AnySystem) -> Vec<Column<SectionRow>> {
             .not_in_table(),
     ]);
     columns
+}
+
+/// What the columns of the states of interfaces mean.
+fn meaning_of_state(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::LogSlipRate => "ln v of interface i",
+        _ => "ln ψ of interface i",
+    }
 }
 
 /// Makes a row of each return and the next.
@@ -124,7 +135,7 @@ impl<'a> RowMaker<'a> {
         let mut state = Vec::with_capacity(y.len() + 1);
         self.plan.subspace.whole(y, &mut state);
         let clusters = self.plan.system.clusters();
-        let slip_rate = (0..clusters.len()).map(|i| (self.slip_rate)(i, &state));
+        let slip_rate = (0..clusters.len()).map(|i| (self.slip_rate)(i, &state, time));
         let slip_rate: Vec<f64> = slip_rate.collect();
         let each = clusters.iter().zip(&slip_rate);
         let sum = each.map(|(&count, v)| count as f64 * v).sum();

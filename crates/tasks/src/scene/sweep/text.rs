@@ -203,7 +203,10 @@ impl SystemPoints for TextPoints {
                     0 => slab.start(None, &system)?,
                     kind => {
                         let steady = slab.start(Some("near-symmetric:0"), &system)?;
-                        start_of_interfaces(kind, random, stress, &steady[1..])
+                        let (states, others) = steady[1..].split_at(slab.layout().parts);
+                        let mut begin = start_of_interfaces(kind, random, stress, states);
+                        begin.extend_from_slice(others);
+                        begin
                     }
                 };
                 let [driving, stiffness, ..] = system.parameters() else {

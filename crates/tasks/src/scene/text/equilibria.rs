@@ -2,6 +2,7 @@
 
 use super::model::{TextModel, number};
 use crate::scene::options::EquilibriaOptions;
+use crate::scene::system::Described;
 use twinslip::equilibrium::{Enclosed, Stability, spectrum_within, zero_near, zeros_in_box};
 use twinslip::error::{Error, Result};
 use twinslip::field::Vector;
@@ -205,7 +206,8 @@ fn ranges(text: &str, model: &TextModel) -> Result<Vec<Interval>> {
             )));
         }
         let i = model.state("a state in `box`", name)?;
-        all[i] = Some(Interval::new(low, high));
+        let inward = |x| model.units().inward(model.quantity(i), x);
+        all[i] = Some(Interval::new(inward(low), inward(high)));
     }
     let of = |(state, range): (&&str, Option<Interval>)| {
         range.ok_or_else(|| Error::Input(format!("`box` {text:?} has no range of {state}")))

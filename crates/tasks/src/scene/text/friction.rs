@@ -4,8 +4,10 @@ use super::law_file::LawFile;
 use twinslip::error::{Error, Result};
 use twinslip::number::{Interval, Jet, Real, Uncertain, bracketed_root};
 
-/// How far zeros are looked for, by powers of two from 1 on, of ln psi and of tau.
-const FARTHEST: i32 = 9;
+/// How far zeros are looked for, of ln psi and of tau, and the factor from one distance to the next, from 1 on: a slip rate may have a pole not
+/// far beyond the zero.
+const FARTHEST: f64 = 512.0;
+const FARTHER: f64 = 1.25;
 /// Powers of two by which a bound is widened until it holds.
 const WIDENINGS: i32 = 40;
 
@@ -17,12 +19,22 @@ pub struct Friction<'a> {
 }
 
 /// Steady sliding at a rate.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Steady {
     /// tau_ss(V)
     pub stress: f64,
-    /// ln psi_ss(V)
-    pub log_state: f64,
+    /// ln psi_ss(V) of each state variable.
+    pub log_states: Vec<f64>,
+}
+
+/// First derivatives at a slip rate and the states that it has: s_tau and each s_psi of the slip rate, g_v and g_psi of each evolution, and by the
+/// stress rate g_r of the first.
+struct Slopes<T> {
+    by_stress_rate: T,
+    of_stress: T,
+    of_states: Vec<T>,
+    by_rate: Vec<T>,
+    by_state: Vec<T>,
 }
 
 impl<'a> Friction<'a> {
@@ -39,14 +51,21 @@ impl<'a> Friction<'a> {
         self.parameters.iter().map(|&x| T::constant(x)).collect()
     }
 
-    /// v(tau, psi)
-    pub fn slip_rate<T: Real>(&self, tau: T, psi: T) -> T {
-        self.law.slip_rate.evaluate(&[tau, psi], &self.constants())[0]
+    /// v(tau, psi) of steady sliding, in the psi of all state variables.
+    pub fn slip_rate<T: Real>(&self, tau: T, psi: &[T]) -> T {
+        let variables: Vec<T> = std::iter::once(tau).chain(psi.iter().copied()).collect();
+        self.law.slip_rate.evaluate(&variables, &self.constants())[0]
     }
 
-    /// dpsi/dt, in (v, psi)
-    pub fn evolution<T: Real>(&self, v: T, psi: T) -> T {
-        self.law.evolution.evaluate(&[v, psi], &self.constants())[0]
+    /// dpsi/dt of a state variable at a constant stress, in (v, psi)
+    pub fn evolution<T: Real>(&self, which: usize, v: T, psi: T) -> T {
+        self.evolution_under(which, v, psi, T::constant(0.0))
+    }
+
+    /// The same at a stress with this rate.
+    fn evolution_under<T: Real>(&self, which: usize, v: T, psi: T, stress_rate: T) -> T {
+        let variables = [v, psi, stress_rate];
+        self.law.evolutions[which].evaluate(&variables, &self.constants())[0]
     }
 
     /// The steady state at a slip rate v > 0: ln psi where the evolution falls through zero, next to psi = 1/v, and tau where the slip rate
@@ -55,72 +74,142 @@ impl<'a> Friction<'a> {
     /// # Errors
     /// [`Error::NotConverged`] where there is none.
     pub fn steady(&self, v: f64) -> Result<Steady> {
-        let evolution = |w: Jet<f64, 1>| -self.evolution(Jet::constant(v), w.exp());
-        let log_state = rising_zero("the steady state of the law", -v.ln(), evolution)?;
-        let psi = Jet::constant(log_state.exp());
+        let log_state = |which: usize| {
+            let evolution = |w: Jet<f64, 1>| -self.evolution(which, Jet::constant(v), w.exp());
+            rising_zero("the steady state of the law", -v.ln(), evolution)
+        };
+        let log_states = (0..self.law.evolutions.len()).map(log_state);
+        let log_states = log_states.collect::<Result<Vec<f64>>>()?;
+        let psi = log_states.iter().map(|w| Jet::constant(w.exp()));
+        let psi: Vec<Jet<f64, 1>> = psi.collect();
         let radiated = self.law.damping.map_or(0.0, |i| self.parameters[i] * v);
-        let excess = |tau: Jet<f64, 1>| self.slip_rate(tau, psi) - v;
+        let excess = |tau: Jet<f64, 1>| self.slip_rate(tau, &psi) - v;
         let stress = rising_zero("the steady stress of the law", radiated, excess)?;
-        Ok(Steady { stress, log_state })
+        Ok(Steady { stress, log_states })
     }
 
-    /// The same with bounds, which are infinite where the formulas do not say by intervals that there is a zero.
-    pub fn enclosed(&self, v: Interval, at: Steady) -> [Uncertain; 2] {
-        let evolution = |w: Interval| self.evolution(v, Real::exp(w));
-        let log_state = enclosed(at.log_state, evolution);
-        let all = Interval::around(at.log_state, log_state);
-        let psi = Real::exp(all);
-        let stress = if log_state.is_finite() {
-            enclosed(at.stress, |tau| self.slip_rate(tau, psi) - v)
+    /// The bounds of the stress and of each ln psi, which are infinite where the formulas do not say by intervals that there is a zero.
+    pub fn enclosed(&self, v: Interval, at: &Steady) -> (Uncertain, Vec<Uncertain>) {
+        let each = at.log_states.iter().enumerate().map(|(which, &w)| {
+            Uncertain::new(
+                w,
+                enclosed(w, |w: Interval| self.evolution(which, v, Real::exp(w))),
+            )
+        });
+        let log_states: Vec<Uncertain> = each.collect();
+        let psi = log_states
+            .iter()
+            .map(|w| Real::exp(Interval::around(w.value, w.uncertainty)));
+        let psi: Vec<Interval> = psi.collect();
+        let stress = if log_states.iter().all(|w| w.uncertainty.is_finite()) {
+            enclosed(at.stress, |tau| self.slip_rate(tau, &psi) - v)
         } else {
             f64::INFINITY
         };
-        [
-            Uncertain::new(at.stress, stress),
-            Uncertain::new(at.log_state, log_state),
-        ]
+        (Uncertain::new(at.stress, stress), log_states)
     }
 
-    /// What follows from the derivatives s_tau, s_psi of the slip rate and g_v, g_psi of the evolution at steady sliding: k_c(V) =
-    /// (g_psi + s_psi g_v)/s_tau (16), and d tau_ss/d ln V over dtau/d ln v at a fixed state, which is 1 + s_psi g_v/g_psi.
-    pub fn steady_slopes<T: Real>(&self, v: T, tau: T, psi: T) -> (T, T) {
-        let [of_tau, of_psi] = gradient(tau, psi, |tau, psi| self.slip_rate(tau, psi));
-        let [by_rate, by_state] = gradient(v, psi, |v, psi| self.evolution(v, psi));
-        let critical = (by_state + of_psi * by_rate) / of_tau;
-        let relative = of_psi * by_rate / by_state + 1.0;
+    fn slopes<T: Real>(&self, v: T, tau: T, psi: &[T]) -> Slopes<T> {
+        let fixed = |value: T| Jet {
+            value,
+            gradient: [T::constant(0.0); 2],
+        };
+        let all: Vec<Jet<T, 2>> = psi.iter().map(|&psi| fixed(psi)).collect();
+        let of_stress = self.slip_rate(Jet::variable(tau, 0), &all).gradient[0];
+        let of_states = (0..psi.len()).map(|which| {
+            let mut all = all.clone();
+            all[which] = Jet::variable(psi[which], 1);
+            self.slip_rate(fixed(tau), &all).gradient[1]
+        });
+        let evolutions = psi.iter().enumerate().map(|(which, &psi)| {
+            self.evolution(which, Jet::variable(v, 0), Jet::variable(psi, 1))
+                .gradient
+        });
+        let (by_rate, by_state) = evolutions.map(|[rate, state]| (rate, state)).unzip();
+        let stress_rate = Jet::variable(T::constant(0.0), 0);
+        let first = self.evolution_under(0, fixed(v), fixed(psi[0]), stress_rate);
+        Slopes {
+            by_stress_rate: first.gradient[0],
+            of_stress,
+            of_states: of_states.collect(),
+            by_rate,
+            by_state,
+        }
+    }
+
+    /// What follows from the derivatives s_tau, s_psi of the slip rate and g_v, g_psi of the evolution at steady sliding: k_c(V), and d
+    /// tau_ss/d ln V over dtau/d ln v at a fixed state, which is 1 + s_psi g_v/g_psi, summed over the state variables.
+    ///
+    /// At k_c an eigenvalue is i omega, and a slider resists its slip rate by Z = (1 - sum of s_psi g_v/(i omega - g_psi))/s_tau + i omega m: k_c =
+    /// -i omega Z. With D = -s_psi g_v g_psi of each state variable 1 is the sum of D/(g_psi^2 + omega^2), which is linear in omega^2 for one and
+    /// quadratic for two; the larger root has the stiffer spring. For one without mass that is k_c = (g_psi + s_psi g_v)/s_tau (16), and with an
+    /// evolution that has dtau/dt, as g_r, s_tau + s_psi g_r in place of s_tau.
+    pub fn steady_slopes<T: Real>(&self, v: T, tau: T, psi: &[T]) -> (T, T) {
+        let Slopes {
+            of_stress,
+            of_states,
+            by_rate,
+            by_state,
+            by_stress_rate,
+        } = self.slopes(v, tau, psi);
+        let each = || of_states.iter().zip(&by_rate).zip(&by_state);
+        let relative = each().fold(T::constant(1.0), |sum, ((&s, &g_v), &g)| sum + s * g_v / g);
+        let square = |x: T| x * x;
+        let frequency = match each().collect::<Vec<_>>()[..] {
+            [((&s, &g_v), &g)] => {
+                -(g * (g + s * g_v)) * of_stress / (of_stress + s * by_stress_rate)
+            }
+            [((&s, &g_v), &g), ((&s_2, &g_v2), &g_2)] => {
+                let (d, d_2) = (-(s * g_v * g), -(s_2 * g_v2 * g_2));
+                let (g, g_2) = (square(g), square(g_2));
+                let half = (d + d_2 - g - g_2) * 0.5;
+                half + (square(half) - (g * g_2 - d * g_2 - d_2 * g)).sqrt()
+            }
+            _ => unreachable!("one state variable, or two"),
+        };
+        let critical = match each().collect::<Vec<_>>()[..] {
+            [((&s, &g_v), &g)] => (g + s * g_v) / (of_stress + s * by_stress_rate),
+            _ => each().fold(T::constant(0.0), |sum, ((&s, &g_v), &g)| {
+                sum + s * g_v / of_stress * frequency / (square(g) + frequency)
+            }),
+        };
+        let critical = match &self.law.inertia {
+            Some(inertia) => critical + frequency * self.parameters[inertia.mass],
+            None => critical,
+        };
         (critical, relative)
     }
 }
 
 impl Friction<'_> {
     /// dg/dpsi + s_psi dg/dv: the rate at which a small difference of psi grows between interfaces that are in this state, under one
-    /// stress.
+    /// stress; of those that have but one state variable and no mass.
     pub fn split_rate<T: Real>(&self, tau: T, psi: T) -> T {
-        let v = self.slip_rate(tau, psi);
-        let [_, of_psi] = gradient(tau, psi, |tau, psi| self.slip_rate(tau, psi));
-        let [by_rate, by_state] = gradient(v, psi, |v, psi| self.evolution(v, psi));
-        by_state + of_psi * by_rate
+        let v = self.slip_rate(tau, &[psi]);
+        let slopes = self.slopes(v, tau, &[psi]);
+        slopes.by_state[0] + slopes.of_states[0] * slopes.by_rate[0]
     }
 
-    /// The same with their derivatives in V along steady sliding, where dpsi_ss/dV = -g_v/g_psi and dtau_ss/dV = (1 - s_psi
+    /// The same with their derivatives in V along steady sliding, where dpsi_ss/dV = -g_v/g_psi and dtau_ss/dV = (1 - sum of s_psi
     /// dpsi_ss/dV)/s_tau.
-    pub fn along_steady<T: Real>(&self, v: T, tau: T, psi: T) -> (Jet<T, 1>, Jet<T, 1>) {
-        let [of_tau, of_psi] = gradient(tau, psi, |tau, psi| self.slip_rate(tau, psi));
-        let [by_rate, by_state] = gradient(v, psi, |v, psi| self.evolution(v, psi));
-        let state = -by_rate / by_state;
-        let stress = (-(of_psi * state) + 1.0) / of_tau;
+    pub fn along_steady<T: Real>(&self, v: T, tau: T, psi: &[T]) -> (Jet<T, 1>, Jet<T, 1>) {
+        let slopes = self.slopes(v, tau, psi);
+        let each = slopes.by_rate.iter().zip(&slopes.by_state);
+        let states: Vec<T> = each.map(|(&g_v, &g)| -g_v / g).collect();
+        let by_states = slopes.of_states.iter().zip(&states);
+        let by_states = by_states.fold(T::constant(0.0), |sum, (&s, &w)| sum + s * w);
+        let stress = (-by_states + 1.0) / slopes.of_stress;
         let along = |value: T, slope: T| Jet {
             value,
             gradient: [slope],
         };
-        let one = T::constant(1.0);
-        self.steady_slopes(along(v, one), along(tau, stress), along(psi, state))
+        let psi = psi
+            .iter()
+            .zip(states)
+            .map(|(&psi, slope)| along(psi, slope));
+        let psi: Vec<Jet<T, 1>> = psi.collect();
+        self.steady_slopes(along(v, T::constant(1.0)), along(tau, stress), &psi)
     }
-}
-
-/// Both first derivatives.
-fn gradient<T: Real>(x: T, y: T, of: impl Fn(Jet<T, 2>, Jet<T, 2>) -> Jet<T, 2>) -> [T; 2] {
-    of(Jet::variable(x, 0), Jet::variable(y, 1)).gradient
 }
 
 /// The zero next to a point through which a function rises.
@@ -130,7 +219,8 @@ fn rising_zero(
     function: impl Fn(Jet<f64, 1>) -> Jet<f64, 1>,
 ) -> Result<f64> {
     let at = |x: f64| function(Jet::variable(x, 0));
-    let distances = (0..=FARTHEST).map(|k| f64::from(1 << k));
+    let next = |distance: &f64| Some(distance * FARTHER).filter(|next| *next < FARTHEST * FARTHER);
+    let distances = std::iter::successors(Some(1.0), next);
     let (mut low, mut high) = (from, from);
     let (mut at_low, mut at_high) = (at(from).value, at(from).value);
     for distance in std::iter::once(0.0).chain(distances) {
@@ -154,7 +244,7 @@ fn rising_zero(
     }
     Err(Error::NotConverged {
         what,
-        iterations: FARTHEST as usize,
+        iterations: FARTHEST.log(FARTHER) as usize,
         residual: at(from).value.abs(),
         tolerance: 0.0,
     })

@@ -47,7 +47,7 @@ pub(in crate::scene) fn curve_of_formulas(
 fn landmarks(friction: &Friction<'_>, points: &[At]) -> Result<LawLandmarks> {
     let slopes: Vec<Slopes> = points
         .iter()
-        .map(|(steady, at)| slopes_at(friction, at.slip_rate, *steady))
+        .map(|(steady, at)| slopes_at(friction, at.slip_rate, steady))
         .collect();
     let mut extrema = Vec::new();
     for (pair, ends) in slopes.windows(2).zip(points.windows(2)) {
@@ -72,7 +72,7 @@ fn landmarks(friction: &Friction<'_>, points: &[At]) -> Result<LawLandmarks> {
             continue;
         }
         let steady = friction.steady(v)?;
-        let [stress, _] = friction.enclosed(around, steady);
+        let (stress, _) = friction.enclosed(around, &steady);
         extrema.push(Extremum::new(kind, Uncertain::new(v, radius), stress));
     }
     Ok(LawLandmarks {
@@ -84,9 +84,10 @@ fn landmarks(friction: &Friction<'_>, points: &[At]) -> Result<LawLandmarks> {
 
 fn point(friction: &Friction<'_>, interface: usize, v: f64) -> Result<At> {
     let steady = friction.steady(v)?;
-    let [stress, log_state] = friction.enclosed(Interval::constant(v), steady);
-    let psi = steady.log_state.exp();
-    let (critical_stiffness, _) = friction.steady_slopes(v, steady.stress, psi);
+    let (stress, log_states) = friction.enclosed(Interval::constant(v), &steady);
+    let all = exponentials(&steady);
+    let (critical_stiffness, _) = friction.steady_slopes(v, steady.stress, &all);
+    let (psi, log_state) = (all[0], log_states[0]);
     let rounding = f64::EPSILON * psi;
     let coefficient = friction.parameter("direct_effect");
     let point = LawPoint {
@@ -107,19 +108,26 @@ struct Slopes<T = f64> {
     relative: Jet<T, 1>,
 }
 
-fn slopes_at(friction: &Friction<'_>, v: f64, steady: Steady) -> Slopes {
-    let (critical, relative) = friction.along_steady(v, steady.stress, steady.log_state.exp());
+/// psi of all state variables.
+fn exponentials(steady: &Steady) -> Vec<f64> {
+    steady.log_states.iter().map(|w| w.exp()).collect()
+}
+
+fn slopes_at(friction: &Friction<'_>, v: f64, steady: &Steady) -> Slopes {
+    let psi = exponentials(steady);
+    let (critical, relative) = friction.along_steady(v, steady.stress, &psi);
     Slopes { critical, relative }
 }
 
 /// The same with bounds at a rate, or over a range of rates.
 fn slopes_within(friction: &Friction<'_>, v: Interval) -> Option<Slopes<Interval>> {
     let steady = friction.steady(0.5 * v.lo() + 0.5 * v.hi()).ok()?;
-    let [stress, log_state] = friction.enclosed(v, steady);
+    let (stress, log_states) = friction.enclosed(v, &steady);
     let known = stress.uncertainty.is_finite();
     let around = |x: Uncertain| Interval::around(x.value, x.uncertainty);
-    let psi = Real::exp(around(log_state));
-    let (critical, relative) = friction.along_steady(v, around(stress), psi);
+    let psi = log_states.into_iter().map(|w| Real::exp(around(w)));
+    let psi: Vec<Interval> = psi.collect();
+    let (critical, relative) = friction.along_steady(v, around(stress), &psi);
     known.then_some(Slopes { critical, relative })
 }
 
@@ -137,7 +145,7 @@ fn zero_of(
                 value: f64::NAN,
                 gradient: [f64::NAN],
             },
-            |steady| of(slopes_at(friction, v, steady)),
+            |steady| of(slopes_at(friction, v, &steady)),
         );
         (quantity.value, quantity.gradient[0] * v)
     });
@@ -176,7 +184,7 @@ fn largest_stiffness(
         if !radius.is_finite() {
             continue;
         }
-        let stiffness = slopes_at(friction, v, friction.steady(v)?).critical.value;
+        let stiffness = slopes_at(friction, v, &friction.steady(v)?).critical.value;
         let error = slopes_within(friction, around).map_or(f64::INFINITY, |all| {
             all.critical.value.distance_from(stiffness)
         });

@@ -1,35 +1,60 @@
-//! A friction law from a TOML file: its slip rate and its evolution, and the interfaces that have it.
+//! A friction law from a TOML file: its slip rate and its evolution.
 
 use super::file::{Meaning, Tables, parsed};
 use super::fingerprint::fingerprint;
 use super::lowering::lowered_apart;
+use super::modulation::Modulation;
+use super::more_states::SECOND_SLIP_LENGTH;
 use crate::scene::file::Reader;
 use toml::de::DeTable;
 use twinslip::error::{Error, Result};
-use twinslip::expression::{Binary, Builder, Expressions, Function, Place};
+use twinslip::expression::{Binary, Builder, Expressions, Place};
 
 /// What the formulas of a law are in.
-const QUANTITIES: [&str; 3] = ["tau", "psi", "v"];
+const QUANTITIES: [&str; 4] = ["tau", "psi", "v", "stress_rate"];
+/// Where dtau/dt stands among the variables of an evolution, behind v and psi.
+const STRESS_RATE: usize = 2;
 /// Names that interfaces give to their parameters and columns, and so a law can't.
 const TAKEN: [&str; 5] = ["driving", "driving_rate", "stiffness", "stress", "time"];
 /// The same, with the number of the interface behind them.
-const NUMBERED: [&str; 4] = ["state_", "log_state_", "slip_rate_", "slip_"];
+const NUMBERED: [&str; 7] = [
+    "state_",
+    "log_state_",
+    "second_state_",
+    "log_second_state_",
+    "slip_rate_",
+    "log_slip_rate_",
+    "slip_",
+];
 
 /// A friction law as a file has it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LawFile {
     /// What it is called.
     pub name: String,
-    /// v, in (tau, psi) and the parameters.
+    /// v, in tau, the psi of all state variables and the parameters.
     pub slip_rate: Expressions,
-    /// dpsi/dt, in (v, psi) and the parameters.
-    pub evolution: Expressions,
+    /// dpsi/dt of each state variable, in (v, psi, dtau/dt) and the parameters.
+    pub evolutions: Vec<Expressions>,
+    /// What an interface with mass moves by, where it has one.
+    pub inertia: Option<Inertia>,
+    /// What varies in time.
+    pub modulations: Vec<Modulation>,
     /// The parameters and their values in the file.
     pub parameters: Vec<(String, f64)>,
     /// A number that tells its formulas from others.
     pub fingerprint: String,
     /// Where radiation damping stands among the parameters, where the law has it beside what the file says.
     pub damping: Option<usize>,
+}
+
+/// The motion of an interface with mass.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Inertia {
+    /// The friction stress without damping, in v, the psi of all state variables and the parameters.
+    pub friction: Expressions,
+    /// Where the mass stands among the parameters.
+    pub mass: usize,
 }
 
 impl LawFile {
@@ -43,7 +68,10 @@ impl LawFile {
         let tables = read(reader, table.get_ref())?;
         let formulas = lowered_apart(
             &tables,
-            &[&[Some(0), Some(1), None], &[None, Some(1), Some(0)]],
+            &[
+                &[Some(0), Some(1), None, None],
+                &[None, Some(1), Some(0), Some(STRESS_RATE)],
+            ],
         )?;
         let [slip_rate, evolution] =
             <[Expressions; 2]>::try_from(formulas).expect("one for each of the two formulas");
@@ -52,7 +80,9 @@ impl LawFile {
             parameters: tables.parameters.iter().map(own).collect(),
             name: tables.name,
             slip_rate,
-            evolution,
+            evolutions: vec![evolution],
+            inertia: None,
+            modulations: Vec::new(),
             fingerprint: fingerprint(table.get_ref()),
             damping: None,
         })
@@ -63,7 +93,8 @@ impl LawFile {
         self.parameters.iter().position(|(own, _)| own == name)
     }
 
-    /// The same law with radiation damping, which is a parameter more: tau - eta v stands in the place of tau.
+    /// The same law with radiation damping, which is a parameter more: tau - eta v stands in the place of tau. Of a law with mass the friction
+    /// stays as it is: what is radiated resists beside it.
     ///
     /// # Errors
     /// [`Error::Input`] for a slip rate that is not a factor times sinh or exp of the stress.
@@ -87,32 +118,69 @@ impl LawFile {
     ///
     /// # Errors
     /// [`Error::Input`] where there are too many operations.
-    pub(super) fn scaled(mut self, unit: f64, bounds_state: bool) -> Result<Self> {
-        let [slip_rate, evolution] = [0, 1].map(|which| {
+    pub(super) fn scaled(mut self, unit: f64) -> Result<Self> {
+        let bounds_state = self.bounds_state();
+        let own_state = |builder: &mut Builder, psi: Place, l: Place| match bounds_state {
+            true => Ok(psi),
+            false => builder.binary(Binary::Quotient, psi, l),
+        };
+        let states = 1..=self.evolutions.len();
+        let mut builder = Builder::default();
+        let own = self.own_units(&mut builder, unit)?;
+        let tau = builder.variable(0)?;
+        let mut variables = vec![builder.binary(Binary::Product, tau, own.q)?];
+        for i in states.clone() {
+            let psi = builder.variable(i)?;
+            variables.push(own_state(&mut builder, psi, own.l)?);
+        }
+        let slip_rate = builder.insert(&self.slip_rate, &variables, &own.parameters)?;
+        let slip_rate = builder.complete(slip_rate);
+        let mut evolutions = Vec::with_capacity(self.evolutions.len());
+        for evolution in &self.evolutions {
             let mut builder = Builder::default();
             let own = self.own_units(&mut builder, unit)?;
-            let Own { l, q, parameters } = &own;
-            let (first, psi) = (builder.variable(0)?, builder.variable(1)?);
-            let psi = match bounds_state {
-                true => psi,
-                false => builder.binary(Binary::Quotient, psi, *l)?,
+            let (v, psi) = (builder.variable(0)?, builder.variable(1)?);
+            let psi = own_state(&mut builder, psi, own.l)?;
+            let stress_rate = builder.variable(STRESS_RATE)?;
+            let stress_rate = builder.binary(Binary::Product, stress_rate, own.q)?;
+            let stress_rate = builder.binary(Binary::Product, stress_rate, own.l)?;
+            let variables = [v, psi, stress_rate];
+            let rate = builder.insert(evolution, &variables, &own.parameters)?[0];
+            let rate = match bounds_state {
+                true => builder.binary(Binary::Quotient, rate, own.l)?,
+                false => rate,
             };
-            let made = if which == 0 {
-                let tau = builder.binary(Binary::Product, first, *q)?;
-                builder.insert(&self.slip_rate, &[tau, psi], parameters)?[0]
-            } else {
-                let rate = builder.insert(&self.evolution, &[first, psi], parameters)?[0];
-                match bounds_state {
-                    true => builder.binary(Binary::Quotient, rate, *l)?,
-                    false => rate,
-                }
-            };
-            Ok(builder.complete(vec![made]))
-        });
-        (self.slip_rate, self.evolution) = (slip_rate?, evolution?);
+            evolutions.push(builder.complete(vec![rate]));
+        }
+        if let Some(mut inertia) = self.inertia.take() {
+            let mut builder = Builder::default();
+            let own = self.own_units(&mut builder, unit)?;
+            let mut variables = vec![builder.variable(0)?];
+            for i in states {
+                let psi = builder.variable(i)?;
+                variables.push(own_state(&mut builder, psi, own.l)?);
+            }
+            let friction = builder.insert(&inertia.friction, &variables, &own.parameters)?[0];
+            let friction = builder.binary(Binary::Quotient, friction, own.q)?;
+            inertia.friction = builder.complete(vec![friction]);
+            self.inertia = Some(inertia);
+        }
+        (self.slip_rate, self.evolutions) = (slip_rate, evolutions);
         let more = SCALES.map(|name| (name.to_owned(), 1.0));
         self.parameters.extend(more);
         Ok(self)
+    }
+
+    /// Whether the evolution depends on dtau/dt.
+    pub(super) fn names_stress_rate(&self) -> bool {
+        self.evolutions
+            .iter()
+            .any(|evolution| evolution.names_variable(STRESS_RATE))
+    }
+
+    /// Whether psi is a number, and no time: then the law has a healing time, as the unit of it.
+    pub(super) fn bounds_state(&self) -> bool {
+        self.place(HEALING_TIME).is_some()
     }
 
     fn own_units(&self, builder: &mut Builder, unit: f64) -> Result<Own> {
@@ -126,7 +194,10 @@ impl LawFile {
             None => n,
         };
         let q = builder.binary(Binary::Quotient, unit, stress)?;
-        if let Some(i) = self.place("healing_time") {
+        if let Some(i) = self.place(HEALING_TIME) {
+            parameters[i] = builder.binary(Binary::Quotient, parameters[i], l)?;
+        }
+        if let Some(i) = self.place(SECOND_SLIP_LENGTH) {
             parameters[i] = builder.binary(Binary::Quotient, parameters[i], l)?;
         }
         if let Some(i) = self.damping {
@@ -176,7 +247,7 @@ fn read<'a>(reader: Reader<'a>, table: &'a DeTable<'_>) -> Result<Tables<'a>> {
         ),
         (
             "evolution",
-            "at which rate does the state change, in v and psi?",
+            "at which rate does the state change, in v, psi and stress_rate?",
         ),
     ] {
         let Some((key, value)) = table.get_key_value(name) else {
@@ -196,70 +267,10 @@ fn taken(name: &str) -> bool {
     TAKEN.contains(&name) || NUMBERED.iter().any(numbered)
 }
 
-/// The rates of the stress, of ln psi of each interface and on a ramp of V_H, and the slip rates of the interfaces.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Sliding {
-    pub rates: Expressions,
-    pub slip_rates: Expressions,
-}
-
-impl Sliding {
-    /// Of clusters of interfaces under one stress, (11) and (19): dtau/dt = K (V_H - sum of n_i v_i), dw_i/dt = (dpsi_i/dt)/psi_i with
-    /// psi_i = e^(w_i), the i-th cluster being n_i interfaces that move alike.
-    ///
-    /// The parameters are V_H, or on a ramp its rate of change, K, and those of the law; `places` has for each cluster where each
-    /// of the law's own stands among them.
-    ///
-    /// # Errors
-    /// [`twinslip::error::Error::Input`] where there are too many operations.
-    pub fn of(
-        law: &LawFile,
-        (places, counts): (&[Vec<usize>], &[usize]),
-        ramp: bool,
-    ) -> Result<Self> {
-        let mut builder = Builder::default();
-        let tau = builder.variable(0)?;
-        let (mut slip_rates, mut evolutions): (Vec<Place>, Vec<Place>) = Default::default();
-        for (i, places) in places.iter().enumerate() {
-            let log_state = builder.variable(i + 1)?;
-            let psi = builder.call(Function::Exp, &[log_state])?;
-            let parameters = places.iter().map(|&place| builder.parameter(place));
-            let parameters = parameters.collect::<Result<Vec<Place>>>()?;
-            let v = builder.insert(&law.slip_rate, &[tau, psi], &parameters)?[0];
-            let evolution = builder.insert(&law.evolution, &[v, psi], &parameters)?[0];
-            slip_rates.push(v);
-            evolutions.push(builder.over_exponential(evolution, log_state)?);
-        }
-        let first = builder.parameter(DRIVING)?;
-        let driving = if ramp {
-            builder.variable(places.len() + 1)?
-        } else {
-            first
-        };
-        let mut total = driving;
-        for (&v, &count) in slip_rates.iter().zip(counts) {
-            let all = match count {
-                1 => v,
-                _ => {
-                    let count = builder.number(count as f64)?;
-                    builder.binary(Binary::Product, v, count)?
-                }
-            };
-            total = builder.binary(Binary::Difference, total, all)?;
-        }
-        let stiffness = builder.parameter(STIFFNESS)?;
-        let mut rates = vec![builder.binary(Binary::Product, stiffness, total)?];
-        rates.extend(evolutions);
-        if ramp {
-            rates.push(first);
-        }
-        let (rates, slip_rates) = builder.complete_both(rates, slip_rates);
-        Ok(Sliding { rates, slip_rates })
-    }
-}
-
 /// What the radiation damping is called.
 pub(super) const DAMPING: &str = "damping";
+/// What the unit of a bounded state is called.
+pub(super) const HEALING_TIME: &str = "healing_time";
 /// Where V_H and K stand among the parameters of interfaces.
 pub(super) const DRIVING: usize = 0;
 pub(super) const STIFFNESS: usize = 1;

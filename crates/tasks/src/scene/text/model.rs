@@ -10,7 +10,7 @@ use crate::scene::program::{Program, Stretch};
 use crate::scene::set::assignments;
 use crate::scene::shipped::{shipped_law, shipped_system, shipped_system_names};
 use crate::scene::system::Described;
-use crate::scene::units::Units;
+use crate::scene::units::{Quantity, Units};
 use serde_json::{Map, Value, json};
 use std::borrow::Cow;
 use std::path::Path;
@@ -20,7 +20,7 @@ use twinslip::field::Vector;
 use twinslip::friction::AnyLaw;
 use twinslip::integrate::AnyField;
 use twinslip::model::TextSystem;
-use twinslip::number::Interval;
+use twinslip::number::{Interval, Uncertain};
 
 /// No file is longer, in bytes.
 const LONGEST: u64 = 1 << 16;
@@ -56,8 +56,11 @@ impl TextModel {
     pub fn in_time(options: &ModelOptions, free: &[&str]) -> Result<Option<Self>> {
         let law = match options.slab.law_file() {
             Some(path) => read_law(path)?,
-            None if options.slab.has_clusters() => built_in_law(&options.slab.law)?,
-            None => return Self::read(&options.slab.text),
+            None if options.slab.text.system.is_some() => return Self::read(&options.slab.text),
+            None if options.slab.has_clusters() || options.slab.needs_formulas(free)? => {
+                built_in_law(&options.slab.law)?
+            }
+            None => return Ok(None),
         };
         let (slab, system) = TextSlab::new(law, options, free)?;
         let mut echo = slab.echo(&system, &options.slab);
@@ -85,16 +88,6 @@ impl TextModel {
         Ok(Some(model))
     }
 
-    /// This model, of a command that knows no units of clusters.
-    pub(in crate::scene) fn without_units(self) -> Result<Self> {
-        match self.units.si() {
-            false => Ok(self),
-            true => Err(Error::Input(
-                "`si`: runs, returns and orbits of clusters, and of more than 2 interfaces, are computed without units; equilibria, branch, locus, sweep and law have them".into(),
-            )),
-        }
-    }
-
     /// The system that the options name; `None` where they name none.
     ///
     /// # Errors
@@ -106,6 +99,14 @@ impl TextModel {
 
     /// This model, unless its formulas name time.
     fn autonomous(model: Option<Self>) -> Result<Option<Self>> {
+        if model
+            .as_ref()
+            .is_some_and(|x| x.slab.is_some() && x.system.is_timed())
+        {
+            return Err(Error::Input(
+                "`modulate` varies a parameter in time, and only `integrate`, and solve_ivp in Python, take such interfaces".into(),
+            ));
+        }
         let Some((file, TimeUse { formula, place })) = model.as_ref().and_then(|x| x.time.as_ref())
         else {
             return Ok(model);
@@ -173,6 +174,12 @@ impl TextModel {
         self.of_interfaces(STIFFNESS).unwrap_or(0.0)
     }
 
+    /// The quantity that a state measures.
+    pub fn quantity(&self, state: usize) -> Quantity {
+        let layout = self.slab.as_ref().map(TextSlab::layout);
+        layout.map_or(Quantity::Number, |layout| layout.quantity(state))
+    }
+
     fn of_interfaces(&self, place: usize) -> Option<f64> {
         let slab = self.slab.as_ref();
         slab.map(|_| self.system.parameters()[place])
@@ -188,7 +195,13 @@ impl TextModel {
                 "`program` changes the driving velocity of interfaces; a user-defined `system` has none".into(),
             ));
         };
-        let Some(first) = slab.driving.or(program.first()) else {
+        if slab.varies_in_time("driving") {
+            return Err(Error::Input(
+                "`program` and `modulate` driving both say how the driving velocity changes; give one of them".into(),
+            ));
+        }
+        let inward = |v| self.units.inward(Quantity::SlipRate, v);
+        let Some(first) = slab.driving.or(program.first().map(inward)) else {
             return Err(Error::Input(
                 "`driving` V_H is missing: which velocity is it before the first change of `program`?"
                     .into(),
@@ -196,7 +209,10 @@ impl TextModel {
         };
         self.system
             .set(self.system.parameter_names()[DRIVING], first)?;
-        self.echo.insert("driving".into(), json!(first + 0.0));
+        let told = self
+            .units
+            .outward_uncertain(Quantity::SlipRate, Uncertain::new(first, 0.0));
+        self.echo.insert("driving".into(), json!(told.value + 0.0));
         self.echo.insert("program".into(), json!(program.told()));
         Ok(())
     }

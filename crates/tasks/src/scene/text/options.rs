@@ -13,6 +13,7 @@ pub struct TextOptions {
         conflicts_with_all = [
             "law", "interfaces", "clusters", "healing_time", "residual_strength", "direct_effect", "evolution_effect", "reference_friction",
             "si", "slip_length", "reference_rate", "time_unit", "normal_stress", "damping", "shear_modulus", "shear_wave_speed",
+            "second_evolution_effect", "second_slip_length", "mass", "modulate", "normal_stress_coupling",
         ]
     )]
     pub system: Option<PathBuf>,

@@ -17,7 +17,7 @@ impl TextModel {
         orbit: &mut Orbit,
         accuracy: &OrbitAccuracy,
     ) -> Result<()> {
-        let Some(slab) = &self.slab else {
+        let Some(slab) = self.slab.as_ref().filter(|slab| slab.has_clusters()) else {
             return Ok(());
         };
         let vector = |node: &Vec<f64>| Vector::from_column_slice(node);
@@ -68,7 +68,7 @@ pub(in crate::scene) fn symmetry(options: &OrbitOptions, model: &TextModel) -> R
         }
         if let Some(text) = &options.start {
             let start = model.start(Some(text))?;
-            let alike = start.iter().skip(2).all(|state| *state == start[1]);
+            let alike = slab.move_alike(start.as_slice(), |x, y| x == y);
             if alike != (symmetry == Symmetry::Symmetric) {
                 let how = if alike { "alike" } else { "apart" };
                 return refused(&format!("in `start` {text} the interfaces move {how}"));

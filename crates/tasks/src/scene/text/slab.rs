@@ -1,9 +1,10 @@
 //! Interfaces whose friction law is from a file, and what the options say about them.
 
 use super::friction::Friction;
-use super::law_file::{DRIVING, LawFile, STIFFNESS, Sliding};
+use super::law_file::{DRIVING, LawFile, STIFFNESS};
 use super::model::number;
-use super::slab_options::{Own, counts, damped, parameters, unit_of_stress, units};
+use super::slab_options::{Own, counts, damped, extended, parameters, unit_of_stress, units};
+use super::sliding::{Sliding, StateLayout};
 use crate::scene::options::{ModelOptions, SlabOptions};
 use crate::scene::plan::{NEAR_SYMMETRIC, USUAL_START};
 use crate::scene::units::{Quantity, Units};
@@ -11,7 +12,7 @@ use serde_json::{Map, Value, json};
 use std::borrow::Cow;
 use twinslip::error::{Error, Result};
 use twinslip::field::Vector;
-use twinslip::friction::{AnyLaw, Law, Parameters, positive};
+use twinslip::friction::positive;
 use twinslip::integrate::AnyField;
 use twinslip::model::TextSystem;
 use twinslip::number::{Interval, Jet, Real, Uncertain};
@@ -47,12 +48,15 @@ impl TextSlab {
         let counts = counts(&options.slab)?;
         let interfaces = counts.len();
         let units = units(&law, &options.slab)?;
+        let law = extended(law, &options.slab, (&units, free))?;
+        if law.layout(interfaces).has_more() && counts.iter().any(|&count| count > 1) {
+            return Err(Error::Input(
+                "`clusters` that split are of interfaces with one state variable and without mass; leave it out, or give each cluster one interface".into(),
+            ));
+        }
         let law = damped(law, options, (&units, free))?;
         let law = match unit_of_stress(&options.slab, &units, free)? {
-            Some(unit) => {
-                let named = AnyLaw::named(&options.slab.law, Parameters::heslot_1994())?;
-                law.scaled(unit, named.bounds_state())?
-            }
+            Some(unit) => law.scaled(unit)?,
             None => law,
         };
         let mut loading = [options.driving, options.stiffness];
@@ -115,6 +119,11 @@ impl TextSlab {
         Ok((slab, system))
     }
 
+    /// Whether a parameter varies in time.
+    pub(super) fn varies_in_time(&self, name: &str) -> bool {
+        self.law.modulation(name).is_some()
+    }
+
     /// How many interfaces there are.
     pub fn interfaces(&self) -> usize {
         self.counts.iter().sum()
@@ -125,23 +134,42 @@ impl TextSlab {
         &self.counts
     }
 
-    /// The states of clusters as large, with the same parameters whatever varies: an exchange of these is no change.
-    pub(in crate::scene) fn interchangeable(&self) -> Vec<Vec<usize>> {
+    /// Which variables they have.
+    pub(in crate::scene) fn layout(&self) -> StateLayout {
+        self.law.layout(self.counts.len())
+    }
+
+    /// Groups of clusters as large, each by its variables, with the same parameters whatever varies: an exchange of these is no change.
+    pub(in crate::scene) fn interchangeable(&self) -> Vec<Vec<Vec<usize>>> {
         let same = |i: usize, j: usize| {
             self.counts[i] == self.counts[j] && self.places[i] == self.places[j]
         };
         let of = |first: usize| {
             let all = (first..self.counts.len()).filter(|&i| same(first, i));
-            // The stress comes first.
-            all.map(|i| i + 1).collect::<Vec<usize>>()
+            all.map(|i| self.layout().of_part(i)).collect::<Vec<_>>()
         };
         let firsts = (0..self.counts.len()).filter(|&i| (0..i).all(|j| !same(i, j)));
         firsts.map(of).filter(|group| group.len() > 1).collect()
     }
 
-    /// Whether there are two parts, as large, whose parameters are the same.
+    /// Whether all parts are in one state, where two numbers are the same by this.
+    pub(in crate::scene) fn move_alike(
+        &self,
+        state: &[f64],
+        same: impl Fn(f64, f64) -> bool,
+    ) -> bool {
+        let layout = self.layout();
+        let first = layout.of_part(0);
+        (1..layout.parts).all(|part| {
+            let mut pairs = layout.of_part(part).into_iter().zip(&first);
+            pairs.all(|(i, &j)| same(state[i], state[j]))
+        })
+    }
+
+    /// Whether there are two parts, as large, whose parameters are the same, in a state space of three dimensions.
     pub(in crate::scene) fn are_equal(&self, system: &TextSystem) -> bool {
-        matches!(self.counts[..], [one, other] if one == other) && !self.differ(system)
+        let equal = matches!(self.counts[..], [one, other] if one == other);
+        equal && !self.layout().has_more() && !self.differ(system)
     }
 
     /// Whether the interfaces differ in any parameter of the law.
@@ -200,8 +228,7 @@ impl TextSlab {
     fn system(&self, parameters: &[(&str, f64)], ramp: bool) -> Result<TextSystem> {
         let parts = (&*self.places, &*self.counts);
         let Sliding { rates, slip_rates } = Sliding::of(&self.law, parts, ramp)?;
-        let mut states = vec!["stress".to_owned()];
-        states.extend((1..=self.counts.len()).map(|i| format!("log_state_{i}")));
+        let mut states = self.layout().names();
         if ramp {
             states.push("driving".into());
         }
@@ -282,11 +309,8 @@ impl TextSlab {
         system: &TextSystem,
     ) -> Result<Vec<f64>> {
         let text = text.unwrap_or(USUAL_START);
-        let shape = match self.counts.len() {
-            1 => "TAU,PSI".to_owned(),
-            2 => "TAU,PSI1,PSI2".to_owned(),
-            count => format!("TAU,PSI1,...,PSI{count}"),
-        };
+        let layout = self.layout();
+        let shape = shape_of_start(layout);
         let unreadable = || {
             Error::Input(format!(
                 "`start` {text:?} must be {shape}, {USUAL_START}[:EPS] or {SPREAD}[:EPS[:SEED]]"
@@ -316,13 +340,16 @@ impl TextSlab {
             };
         }
         let mut start = text.split(',').map(read).collect::<Result<Vec<f64>>>()?;
-        if start.len() != self.counts.len() + 1 {
+        if start.len() != layout.count() {
             return Err(unreadable());
         }
         start[0] = self.units.inward(Quantity::Stress, start[0]);
-        for psi in &mut start[1..] {
-            let given = positive("psi in `start`", *psi)?;
-            *psi = self.units.inward(Quantity::State, given).ln();
+        for (place, value) in start.iter_mut().enumerate().skip(1) {
+            let (name, quantity) = match layout.quantity(place) {
+                Quantity::LogSlipRate => ("v in `start`", Quantity::SlipRate),
+                _ => ("psi in `start`", Quantity::State),
+            };
+            *value = self.units.inward(quantity, positive(name, *value)?).ln();
         }
         Ok(start)
     }
@@ -336,15 +363,26 @@ impl TextSlab {
         /// Of a range, on either side of it.
         const MARGIN: f64 = 0.05;
         let driving = system.parameters()[DRIVING];
-        let mut ends = vec![(f64::INFINITY, f64::NEG_INFINITY); self.counts.len() + 1];
+        let layout = self.layout();
+        let mut ends = vec![(f64::INFINITY, f64::NEG_INFINITY); layout.count()];
         let mut put = |i: usize, x: f64| ends[i] = (ends[i].0.min(x), ends[i].1.max(x));
         for i in 0..self.counts.len() {
             let friction = self.friction(system, i);
             for k in 0..RATES {
-                let v = driving * LEAST.powf(k as f64 / (RATES - 1) as f64);
+                // A single one slides at V_H.
+                let part = match layout.parts {
+                    1 => 0.0,
+                    _ => k as f64 / (RATES - 1) as f64,
+                };
+                let v = driving * LEAST.powf(part);
                 let steady = friction.steady(v)?;
                 put(0, steady.stress);
-                put(i + 1, steady.log_state);
+                for (which, w) in steady.log_states.into_iter().enumerate() {
+                    put(layout.log_state(which, i), w);
+                }
+                if layout.mass {
+                    put(layout.log_slip_rate(i), v.ln());
+                }
             }
         }
         let wider = |(low, high): (f64, f64)| {
@@ -363,16 +401,16 @@ impl TextSlab {
     /// A start of interfaces that move alike: all in their steady states, and moved by exp(EPS) of the usual start.
     pub(super) fn alike(&self, system: &TextSystem) -> Result<Vec<f64>> {
         let mut start = self.start(Some(&format!("{USUAL_START}:0")), system)?;
-        start[1..].iter_mut().for_each(|w| *w += NEAR_SYMMETRIC);
+        start[1..=self.counts.len()]
+            .iter_mut()
+            .for_each(|w| *w += NEAR_SYMMETRIC);
         Ok(start)
     }
 
     /// Each interface in its steady state at an equal share of V_H, the stress that of the first, and the last one moved by exp(EPS).
     fn near_symmetric(&self, by: f64, system: &TextSystem, shape: &str) -> Result<Vec<f64>> {
         let mut start = self.steady(USUAL_START, system, shape)?;
-        if let Some(last) = start.last_mut() {
-            *last += by;
-        }
+        start[self.counts.len()] += by;
         Ok(start)
     }
 
@@ -380,7 +418,7 @@ impl TextSlab {
     fn spread(&self, by: f64, seed: u64, system: &TextSystem, shape: &str) -> Result<Vec<f64>> {
         let mut start = self.steady(SPREAD, system, shape)?;
         let mut random = RandomStart::new(seed, 0);
-        for log_state in &mut start[1..] {
+        for log_state in &mut start[1..=self.counts.len()] {
             *log_state += by * random.between((-1.0, 1.0));
         }
         Ok(start)
@@ -395,21 +433,42 @@ impl TextSlab {
             )));
         }
         let v = driving / self.interfaces() as f64;
-        let mut start = Vec::with_capacity(self.counts.len() + 1);
+        let layout = self.layout();
+        let mut start = vec![0.0; layout.count()];
         for i in 0..self.counts.len() {
             let steady = self.friction(system, i).steady(v)?;
             if i == 0 {
-                start.push(steady.stress);
+                start[0] = steady.stress;
             }
-            start.push(steady.log_state);
+            for (which, w) in steady.log_states.into_iter().enumerate() {
+                start[layout.log_state(which, i)] = w;
+            }
+            if layout.mass {
+                start[layout.log_slip_rate(i)] = v.ln();
+            }
         }
         Ok(start)
     }
 
     /// Whether any interfaces move alike by being in one cluster.
-    fn has_clusters(&self) -> bool {
+    pub(in crate::scene) fn has_clusters(&self) -> bool {
         self.counts.iter().any(|&count| count > 1)
     }
+}
+
+/// What a start has: tau, psi of each part, psi of the second state variable of each, and the slip rate of each with mass.
+fn shape_of_start(layout: StateLayout) -> String {
+    let mut shape = "TAU".to_owned();
+    let second = (layout.states > 1).then_some("SECOND_PSI");
+    let mass = layout.mass.then_some("V");
+    for name in std::iter::once("PSI").chain(second).chain(mass) {
+        shape += &match layout.parts {
+            1 => format!(",{name}"),
+            2 => format!(",{name}1,{name}2"),
+            count => format!(",{name}1,...,{name}{count}"),
+        };
+    }
+    shape
 }
 
 /// A start at steady states that are moved apart at random.

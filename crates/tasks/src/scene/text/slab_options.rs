@@ -1,12 +1,26 @@
 //! Options of interfaces that are given by a law's formulas: their number, their units, and the parameters of each.
 
 use super::law_file::{DAMPING, LawFile, SCALES};
+use super::modulation::NORMAL_STRESS_COUPLING;
+use super::more_states::{MASS, SECOND_EVOLUTION_EFFECT, SECOND_SLIP_LENGTH};
 use crate::scene::options::{ModelOptions, SlabOptions};
 use crate::scene::set::{assignments, put_in, twice};
 use crate::scene::system::{damping, scales};
 use crate::scene::units::{Quantity, TimeUnit, Units};
+use crate::scene::words::indexed;
 use twinslip::error::{Error, Result};
-use twinslip::friction::{AnyLaw, Law, Parameters};
+use twinslip::friction::{AnyLaw, Law, Parameters, positive};
+
+/// Parameters of built-in laws that are not negative.
+const POSITIVE: [&str; 7] = [
+    "healing_time",
+    "direct_effect",
+    "evolution_effect",
+    "slip_length",
+    "normal_stress",
+    SECOND_SLIP_LENGTH,
+    MASS,
+];
 
 /// A parameter of the law: of all interfaces, or where they differ of each.
 pub(super) struct Own {
@@ -124,6 +138,101 @@ fn differ_in_units(slab: &SlabOptions, free: &[&str]) -> Result<bool> {
     }))
 }
 
+/// A value that an option, or `set`, gives to a parameter of all interfaces, in the user's units; any value where the parameter is free.
+fn given(
+    slab: &SlabOptions,
+    name: &str,
+    option: Option<f64>,
+    free: &[&str],
+) -> Result<Option<f64>> {
+    let set = assignments(&slab.text.set)?;
+    let mut set = set.iter().filter(|(set, _)| *set == name);
+    let value = option.or(set.next().map(|(_, value)| *value));
+    Ok(value.or(free.contains(&name).then_some(1.0)))
+}
+
+impl SlabOptions {
+    /// Whether the interfaces are such that formulas alone describe them: they have a second state variable or mass, of which these parameters
+    /// may be some, or a parameter that varies in time.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for what `set` says.
+    pub fn needs_formulas(&self, free: &[&str]) -> Result<bool> {
+        const MORE: [&str; 4] = [
+            MASS,
+            SECOND_EVOLUTION_EFFECT,
+            SECOND_SLIP_LENGTH,
+            NORMAL_STRESS_COUPLING,
+        ];
+        let set = assignments(&self.text.set)?;
+        // Without mass it is 0.
+        let is_given = |(name, value): &(&str, f64)| *name != MASS || *value != 0.0;
+        let set = set
+            .iter()
+            .filter(|pair| is_given(pair))
+            .map(|(name, _)| *name);
+        let mut names = set.chain(free.iter().copied());
+        let named = names.any(|name| MORE.contains(&indexed(name).0));
+        let options = [
+            (MASS, self.mass),
+            (SECOND_EVOLUTION_EFFECT, self.second_evolution_effect),
+            (SECOND_SLIP_LENGTH, self.second_slip_length),
+            (NORMAL_STRESS_COUPLING, self.normal_stress_coupling),
+        ];
+        let named = named || !self.modulate.is_empty();
+        let mut options = options.iter();
+        Ok(named || options.any(|(name, value)| value.is_some_and(|x| is_given(&(name, x)))))
+    }
+}
+
+/// The law with the second state variable and the mass that the options give it. What is free has any value, which is set before it counts.
+pub(super) fn extended(
+    mut law: LawFile,
+    slab: &SlabOptions,
+    (units, free): (&Units, &[&str]),
+) -> Result<LawFile> {
+    let bases: Vec<&str> = free.iter().map(|name| indexed(name).0).collect();
+    let second = given(
+        slab,
+        SECOND_EVOLUTION_EFFECT,
+        slab.second_evolution_effect,
+        &bases,
+    )?;
+    let length = given(slab, SECOND_SLIP_LENGTH, slab.second_slip_length, &bases)?;
+    law = match (second, length) {
+        (None, None) => law,
+        (Some(b), Some(length)) => {
+            let length = positive(SECOND_SLIP_LENGTH, length)?;
+            law.with_second_state(b, units.inward(Quantity::Length, length))?
+        }
+        (Some(_), None) => {
+            return Err(Error::Input(
+                "`second-slip-length` L2 is missing: a second state variable has a slip length of its own, without `si` in units of the first".into(),
+            ));
+        }
+        (None, Some(_)) => {
+            return Err(Error::Input(
+                "`second-evolution-effect` b2 is missing: how strong is the second state variable?"
+                    .into(),
+            ));
+        }
+    };
+    law = match given(slab, MASS, slab.mass, &bases)? {
+        None | Some(0.0) => law,
+        Some(mass) => law.with_mass(units.inward(Quantity::Mass, positive(MASS, mass)?))?,
+    };
+    law = law.modulated(&slab.modulate, units)?;
+    match given(
+        slab,
+        NORMAL_STRESS_COUPLING,
+        slab.normal_stress_coupling,
+        &bases,
+    )? {
+        None => Ok(law),
+        Some(alpha) => law.coupled(alpha),
+    }
+}
+
 /// The law with the radiation damping that the options give it, where it has no parameter of that name itself. Where that is free it has any
 /// value, which is set before it counts.
 pub(super) fn damped(
@@ -170,12 +279,16 @@ pub(super) fn parameters(
         ("evolution_effect", slab.evolution_effect),
         ("reference_friction", slab.reference_friction),
         (DAMPING, slab.damping),
+        (SECOND_EVOLUTION_EFFECT, slab.second_evolution_effect),
+        (SECOND_SLIP_LENGTH, slab.second_slip_length),
+        (MASS, slab.mass),
+        (NORMAL_STRESS_COUPLING, slab.normal_stress_coupling),
     ];
     for (name, value) in given {
         let Some(value) = value else { continue };
         let Some(own) = own.iter_mut().find(|own| own.name == name) else {
-            // Without damping a law needs none.
-            if name == DAMPING {
+            // Without damping or mass a law needs none.
+            if name == DAMPING || (name == MASS && value == 0.0) {
                 continue;
             }
             let option = name.replace('_', "-");
@@ -187,6 +300,9 @@ pub(super) fn parameters(
         own.values.fill(inward(name, value));
     }
     for (name, value) in assignments(&slab.text.set)? {
+        if slab.law_file().is_none() && POSITIVE.contains(&indexed(name).0) && value != 0.0 {
+            positive(name, value)?;
+        }
         match name {
             "driving" => put_in(&mut loading[0], name, value)?,
             "stiffness" => put_in(&mut loading[1], name, value)?,
@@ -197,6 +313,7 @@ pub(super) fn parameters(
                 return Err(twice(name, name));
             }
             DAMPING if law.place(DAMPING).is_none() => {}
+            MASS if value == 0.0 && law.place(MASS).is_none() => {}
             // These make the units.
             _ if slab.si && SCALES.contains(&name) => {}
             _ => put(&mut own, name, inward(name, value), interfaces)?,

@@ -93,13 +93,16 @@ fn rates(law: &LawFile, direct_effect: usize, reference_rate: f64) -> Result<Exp
     let tau = builder.binary(Binary::Quotient, mu, own[direct_effect])?;
     let psi = builder.call(Function::Exp, &[w])?;
     let v = builder.insert(&law.slip_rate, &[tau, psi], &own)?[0];
-    let evolution = builder.insert(&law.evolution, &[v, psi], &own)?[0];
-    let evolution = builder.over_exponential(evolution, w)?;
     let per_second = builder.binary(Binary::Quotient, reference, length?)?;
-    let of_state = builder.binary(Binary::Product, evolution, per_second)?;
     let stiffness = builder.binary(Binary::Product, stiffness?, reference)?;
     let stretching = builder.binary(Binary::Difference, velocity, v)?;
     let of_friction = builder.binary(Binary::Product, stiffness, stretching)?;
+    // As the law has it, in L/V*.
+    let of_stress = builder.binary(Binary::Quotient, of_friction, own[direct_effect])?;
+    let of_stress = builder.binary(Binary::Quotient, of_stress, per_second)?;
+    let evolution = builder.insert(&law.evolutions[0], &[v, psi, of_stress], &own)?[0];
+    let evolution = builder.over_exponential(evolution, w)?;
+    let of_state = builder.binary(Binary::Product, evolution, per_second)?;
     let acceleration = builder.parameter(APPARATUS.len() + own.len())?;
     Ok(builder.complete(vec![of_friction, of_state, acceleration]))
 }
@@ -127,6 +130,6 @@ impl Sliders<3> for TextSlider {
         let own = parameters[APPARATUS.len()..].to_vec();
         let a = own[self.direct_effect];
         let steady = Friction::new(&self.law, own).steady(v)?;
-        Ok(State::from([a * steady.stress, steady.log_state, v]))
+        Ok(State::from([a * steady.stress, steady.log_states[0], v]))
     }
 }

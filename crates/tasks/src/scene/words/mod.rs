@@ -32,6 +32,8 @@ enum Shape {
     Program,
     /// The first number is a stress.
     Start,
+    /// `NAME=EPS:PERIOD[:PHASE]`.
+    Modulation,
     /// `NAME=NUMBERS`, with commas between.
     Pairs,
     /// Values of the parameter that varies, whose name may stand before them.
@@ -187,6 +189,7 @@ impl<'a> Context<'a> {
             "law" => Shape::Law,
             "program" => Shape::Program,
             "start" => Shape::Start,
+            "modulate" => Shape::Modulation,
             "set" | "grid" | "draw" | "bounds" | "surface" | "state-1" | "state-2" => Shape::Pairs,
             "at" if self.command == "locus" => Shape::Pairs,
             "from" | "to" => match self.command {
@@ -260,6 +263,14 @@ impl<'a> Made<'a> {
             Shape::Numbers(kind) => self.numbers(value, kind, 1.0)?,
             Shape::Times => self.numbers(value, Kind::Time, seconds)?,
             Shape::Program => self.program(value)?,
+            Shape::Modulation => {
+                let (name, numbers) = value.split_once('=').unwrap_or((value, ""));
+                let mut parts: Vec<String> = numbers.split(':').map(str::to_owned).collect();
+                if let Some(period) = parts.get_mut(1) {
+                    *period = self.number(period, Kind::Time, seconds)?;
+                }
+                format!("{}={}", self.context.parameter(name), parts.join(":"))
+            }
             Shape::Start => {
                 let (stress, states) = value.split_at(value.find(',').unwrap_or(value.len()));
                 self.number(stress, Kind::Stress, 1.0)? + states

@@ -6,7 +6,7 @@ use super::unit::Kind;
 pub(super) const REFERENCE_RATE: &str = "reference_rate";
 
 /// Symbols and the names of their parameters; of several symbols of one parameter the last is that of the paper and of the help.
-const SYMBOLS: [(&str, &str); 16] = [
+const SYMBOLS: [(&str, &str); 19] = [
     ("a", "direct_effect"),
     ("b", "evolution_effect"),
     ("c", "residual_strength"),
@@ -23,6 +23,9 @@ const SYMBOLS: [(&str, &str); 16] = [
     ("V_H", "driving"),
     ("R", "healing_time"),
     ("eta", "damping"),
+    ("b2", "second_evolution_effect"),
+    ("L2", "second_slip_length"),
+    ("m", "mass"),
 ];
 
 /// Other names of laws.
@@ -73,11 +76,14 @@ pub(super) fn measures(name: &str) -> Option<Kind> {
         "stiffness" => Kind::Stiffness,
         "damping" => Kind::Damping,
         "healing_time" => Kind::Time,
-        "slip_length" => Kind::Length,
+        "slip_length" | "second_slip_length" => Kind::Length,
+        "mass" => Kind::MassPerArea,
         "normal_stress" | "stress" => Kind::Stress,
-        "residual_strength" | "direct_effect" | "evolution_effect" | "reference_friction" => {
-            Kind::Number
-        }
+        "residual_strength"
+        | "direct_effect"
+        | "evolution_effect"
+        | "second_evolution_effect"
+        | "reference_friction" => Kind::Number,
         _ => return None,
     })
 }

@@ -12,6 +12,8 @@ pub(in super::super) enum Kind {
     Velocity,
     Stiffness,
     Damping,
+    Mass,
+    MassPerArea,
 }
 
 impl Kind {
@@ -25,6 +27,9 @@ impl Kind {
             Kind::Velocity => [1, -1, 0],
             Kind::Stiffness => [-1, 0, 1],
             Kind::Damping => [-1, 1, 1],
+            // A kilogram is a Pa m s^2.
+            Kind::Mass => [1, 2, 1],
+            Kind::MassPerArea => [-1, 2, 1],
         }
     }
 
@@ -38,6 +43,8 @@ impl Kind {
             Kind::Velocity => ("a velocity", "um/s"),
             Kind::Stiffness => ("a stiffness", "MPa/mm"),
             Kind::Damping => ("a damping", "MPa.s/m"),
+            Kind::Mass => ("a mass", "kg"),
+            Kind::MassPerArea => ("a mass per area", "kg/m^2"),
         }
     }
 }
@@ -51,7 +58,7 @@ struct Unit {
 }
 
 /// The units that products and quotients are made of, and that heads of columns have: name, kind, power of ten, and a number of seconds beside that.
-const UNITS: [(&str, Kind, i32, f64); 28] = [
+const UNITS: [(&str, Kind, i32, f64); 29] = [
     ("m", Kind::Length, 0, 1.0),
     ("km", Kind::Length, 3, 1.0),
     ("cm", Kind::Length, -2, 1.0),
@@ -70,6 +77,7 @@ const UNITS: [(&str, Kind, i32, f64); 28] = [
     ("MPa", Kind::Stress, 6, 1.0),
     ("GPa", Kind::Stress, 9, 1.0),
     ("bar", Kind::Stress, 5, 1.0),
+    ("kg", Kind::Mass, 0, 1.0),
     ("s", Kind::Time, 0, 1.0),
     ("sec", Kind::Time, 0, 1.0),
     ("seconds", Kind::Time, 0, 1.0),
@@ -114,7 +122,7 @@ impl Kind {
 }
 
 impl Unit {
-    /// `MPa.s/m`: factors with a dot, a star or a space between, and what they are divided by after strokes.
+    /// `MPa.s/m`: factors with a dot, a star or a space between, and what they are divided by after strokes; `m^2` for two of one.
     fn parse(text: &str) -> Option<Unit> {
         let mut product = Unit {
             dimensions: [0; 3],
@@ -123,7 +131,11 @@ impl Unit {
         };
         for (place, part) in text.split('/').enumerate() {
             let sign: i8 = if place == 0 { 1 } else { -1 };
-            for factor in part.split(['.', '*', ' ', '\u{b7}']) {
+            let factors = part.split(['.', '*', ' ', '\u{b7}']).flat_map(|factor| {
+                let square = factor.strip_suffix("^2").or(factor.strip_suffix('\u{b2}'));
+                std::iter::repeat_n(square.unwrap_or(factor), 1 + usize::from(square.is_some()))
+            });
+            for factor in factors {
                 let factor = base(factor)?;
                 for (sum, one) in product.dimensions.iter_mut().zip(factor.dimensions) {
                     *sum += sign * one;
