@@ -301,7 +301,6 @@ fn what_clusters_can_not_be_is_said() {
             "together are 4, the number of --interfaces",
         ),
         ("--interfaces 0", "interfaces is 0, but must be at least 1"),
-        ("--clusters 1,2 --si", "without units"),
         (
             "--clusters 1,2 --start 9,0.1",
             "must be TAU,PSI1,PSI2, near-symmetric[:EPS] or spread[:EPS[:SEED]]",

@@ -86,6 +86,7 @@ mod lanes;
 mod law_bifurcations;
 mod law_data;
 mod law_parameters;
+mod laws_by_name;
 mod lyapunov;
 mod many;
 mod many_dimensions;
@@ -94,6 +95,8 @@ mod many_methods;
 mod many_variables;
 mod many_variables_branches;
 mod many_variables_orbits;
+mod modulated;
+mod more_states;
 mod multiple_points;
 #[cfg(target_arch = "x86_64")]
 mod new_parameters;

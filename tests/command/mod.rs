@@ -61,6 +61,14 @@ pub fn object(arguments: &str) -> Value {
     serde_json::from_str(&ended.out).expect("JSON")
 }
 
+/// The object that a command writes which may leave a verdict undecided.
+pub fn object_or_undecided(arguments: &str) -> Value {
+    let ended = twinslip(&format!("{arguments} --format json -q"));
+    let done = [0, 3].contains(&ended.code);
+    assert!(done, "{arguments}: {}", ended.err);
+    serde_json::from_str(&ended.out).expect("JSON")
+}
+
 /// Exit code 2, nothing on standard output, and the sentence.
 #[track_caller]
 pub fn refused(arguments: &str, sentence: &str) -> Ended {

@@ -259,6 +259,11 @@ fn model(option: &str) -> bool {
         "evolution-effect",
         "reference-friction",
         "damping",
+        "second-evolution-effect",
+        "second-slip-length",
+        "mass",
+        "modulate",
+        "normal-stress-coupling",
         "si",
         "shear-modulus",
         "shear-wave-speed",
@@ -351,6 +356,29 @@ fn model_change(command: &str, kind: Kind, option: &str) -> Option<Change> {
         "evolution-effect" => To("0.05"),
         "reference-friction" => To("0.38"),
         "damping" => To(if si { "1e7" } else { "0.01" }),
+        "second-evolution-effect" => With(
+            if si {
+                "--second-slip-length 4e-6 --second-evolution-effect 1e-3"
+            } else {
+                "--second-slip-length 4 --second-evolution-effect 1e-3"
+            },
+            "1.5e-3",
+        ),
+        "second-slip-length" => With(
+            if si {
+                "--second-slip-length 4e-6 --second-evolution-effect 1e-3"
+            } else {
+                "--second-slip-length 4 --second-evolution-effect 1e-3"
+            },
+            if si { "5e-6" } else { "5" },
+        ),
+        // In units of 3.5e10 kg/m^2.
+        "mass" => To(if si { "3.5e11" } else { "10" }),
+        "modulate" => To("driving=0.1:5"),
+        "normal-stress-coupling" => With(
+            "--modulate normal_stress=0.1:5 --normal-stress-coupling 0.1",
+            "0.3",
+        ),
         // In numbers of SI, which these are not, runs take long: those of the kind in SI are made of them.
         "si" if [Two, Unequal, One, Si].contains(&kind) && !of_law => Exempt,
         "si" if si => Exempt,

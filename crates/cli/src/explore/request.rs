@@ -23,7 +23,7 @@ pub const COMMANDS: [&str; 8] = [
 ];
 
 /// Options of text that name no file, whatever the text.
-const TEXTS: [&str; 24] = [
+const TEXTS: [&str; 25] = [
     "along",
     "at",
     "at-driving",
@@ -39,6 +39,7 @@ const TEXTS: [&str; 24] = [
     "grid",
     "in",
     "method",
+    "modulate",
     "of",
     "range",
     "set",
@@ -248,22 +249,23 @@ fn content(name: &str, plain: &str, text: &str) -> Result<String, Error> {
     if plain == "law" && (AnyLaw::NAMES.contains(&text) || ["ageing", "aging"].contains(&text)) {
         return Ok(text.to_owned());
     }
-    let (files, ending) = match plain {
-        "law" => (shipped_laws(), ".toml"),
-        _ => (shipped_systems(), ""),
+    let files = match plain {
+        "law" => shipped_laws(),
+        _ => shipped_systems(),
     };
-    let files = files
-        .iter()
-        .map(|(name, content)| (format!("{name}{ending}"), *content));
-    let files: Vec<(String, &str)> = files.collect();
-    match files.iter().find(|(known, _)| known == text) {
+    let stem = match plain {
+        "law" => text.strip_suffix(".toml").unwrap_or(text),
+        _ => text,
+    };
+    match files.iter().find(|(known, _)| *known == stem) {
         // A file of that name would be read in place of what is built in.
         Some((_, content)) if Path::new(text).exists() => Ok((*content).to_owned()),
         Some(_) => Ok(text.to_owned()),
         None => {
             let laws = AnyLaw::NAMES.iter().filter(|_| plain == "law").copied();
-            let known = laws.chain(files.iter().map(|(known, _)| known.as_str()));
-            unknown(name, text, &known.collect::<Vec<_>>())
+            let others = files.iter().map(|(known, _)| *known);
+            let others = others.filter(|known| plain != "law" || !AnyLaw::NAMES.contains(known));
+            unknown(name, text, &laws.chain(others).collect::<Vec<_>>())
         }
     }
 }

@@ -2,6 +2,7 @@
 //! fields, so they cannot drift apart.
 
 use super::ensemble::EnsembleOptions;
+use super::shipped::law_names;
 use super::text::TextOptions;
 use super::units::TimeUnit;
 use clap::builder::{PossibleValue, TypedValueParser};
@@ -26,9 +27,10 @@ fn laws() -> String {
         .map(|(name, source)| format!("{name} {source}"))
         .collect();
     format!(
-        "Friction law, with its equation in the paper or its source: {}; ageing is dieterich-ruina. Or a user-defined law: FILE.toml with \
-         slip_rate (in tau and psi), evolution (in v and psi) and parameters",
-        listed(&laws)
+        "Friction law, with its equation in the paper or its source: {}; ageing is dieterich-ruina. Or one of {}. Or a user-defined law: \
+         FILE.toml with slip_rate (in tau and psi), evolution (in v, psi and stress_rate) and parameters",
+        listed(&laws),
+        listed(&law_names()[AnyLaw::NAMES.len()..])
     )
 }
 
@@ -64,7 +66,7 @@ pub struct SlabOptions {
     #[command(flatten)]
     pub text: TextOptions,
     /// Friction law.
-    #[arg(long, value_name = "NAME", help = laws(), default_value = "spinodal", value_parser = Names::of(AnyLaw::NAMES), hide_possible_values = true)]
+    #[arg(long, value_name = "NAME", help = laws(), default_value = "spinodal", value_parser = Names::of(law_names()), hide_possible_values = true)]
     pub law: String,
     /// Number N of frictional interfaces, all under the same stress: up to 7 independent ones, up to 600 in equilibria, up to millions in
     /// integrate [default: the sum of --clusters, or 2]

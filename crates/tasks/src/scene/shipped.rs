@@ -2,6 +2,7 @@
 
 use include_dir::{Dir, include_dir};
 use std::path::Path;
+use twinslip::friction::AnyLaw;
 
 static SCENES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../scenes");
 
@@ -35,6 +36,15 @@ pub(super) fn shipped_system_names() -> Vec<&'static str> {
 /// The systems that are built in, sorted: names and texts.
 pub fn shipped_systems() -> Vec<(&'static str, &'static str)> {
     texts("systems")
+}
+
+/// The names of all friction laws: those that are built in, and those of the files that the program carries.
+pub(super) fn law_names() -> Vec<&'static str> {
+    let files = SCENES.get_dir("laws").map_or_else(Vec::new, names);
+    let others = files
+        .into_iter()
+        .filter(|name| !AnyLaw::NAMES.contains(name));
+    AnyLaw::NAMES.into_iter().chain(others).collect()
 }
 
 /// The friction laws that are built in as files, sorted: names and texts.

@@ -2,6 +2,7 @@
 
 use super::options::{ModelOptions, SlabOptions};
 use super::program::Program;
+use super::shipped::{law_names, shipped_law};
 use super::text::given_text;
 use super::unequal::OfOne;
 use super::units::{Quantity, TimeUnit, Units};
@@ -51,8 +52,15 @@ impl SlabOptions {
         let path = Path::new(&self.law);
         let is_file = given_text(path).is_some()
             || path.extension().is_some_and(|ending| ending == "toml")
-            || path.is_file();
+            || path.is_file()
+            || shipped_law(path).is_some();
         (!AnyLaw::NAMES.contains(&self.law.as_str()) && is_file).then_some(path)
+    }
+
+    /// Whether the law is a file that the program carries.
+    pub(super) fn law_is_shipped(&self) -> bool {
+        let path = Path::new(&self.law);
+        given_text(path).is_none() && !path.exists() && shipped_law(path).is_some()
     }
 
     /// What messages call the law: not its text, where that was given.
@@ -237,6 +245,9 @@ impl System {
             options.c(),
         )?
         .damped(damping / scales.map_or(1.0, |s| s.stress / s.slip_rate))?;
+        if !AnyLaw::NAMES.contains(&options.law.as_str()) {
+            return Err(Error::unknown("law", &options.law, &law_names()));
+        }
         let law = AnyLaw::named(&options.law, parameters)?;
         let mut echo = echo(
             if differ { all } else { options },

@@ -49,6 +49,7 @@ impl Quantity {
             "healing_time" => Quantity::HealingTime,
             "slip_length" | "second_slip_length" => Quantity::Length,
             "mass" => Quantity::Mass,
+            "direct_cutoff_rate" | "evolution_cutoff_rate" | "weakening_rate" => Quantity::SlipRate,
             "driving_period" | "normal_stress_period" => Quantity::Time,
             "normal_stress" => Quantity::NormalStress,
             _ => Quantity::Number,

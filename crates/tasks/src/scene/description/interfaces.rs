@@ -243,7 +243,7 @@ fn laws() -> Vec<LawDescription> {
         .iter()
         .filter(|(file, _)| !AnyLaw::NAMES.contains(file));
     let others = others.map(|(file, text)| LawDescription {
-        name: format!("{file}.toml"),
+        name: (*file).to_owned(),
         meaning: about(text),
     });
     built_in.chain(others).collect()

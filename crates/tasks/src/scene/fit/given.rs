@@ -1,5 +1,6 @@
 //! What is given of a fit's parameters: values, and ranges.
 
+use super::law::own_name;
 use super::options::FitOptions;
 use super::plan::Recording;
 use super::unit::GivenStiffness;
@@ -64,7 +65,7 @@ impl Given {
             given.extend(value.map(|x| (name.to_owned(), x)));
         }
         for (name, value) in assignments(&options.set)? {
-            let name = name.replace('-', "_");
+            let name = own_name(&name.replace('-', "_")).to_owned();
             let value = match name.as_str() {
                 "stiffness" => {
                     is_of_stress = true;
@@ -136,7 +137,7 @@ pub(super) fn bounds(
     };
     let Some((text, own)) = options.bounds.iter().find_map(|text| {
         let (own, range) = text.split_once('=')?;
-        (own.trim().replace('-', "_") == name).then_some((text, range))
+        (own_name(&own.trim().replace('-', "_")) == name).then_some((text, range))
     }) else {
         return Ok(match is_length {
             true => (least.max(given.lengths.0), most.min(given.lengths.1)),
@@ -180,6 +181,7 @@ pub(super) fn unknown_bounds(options: &FitOptions, free: &[FreeParameter]) -> Re
             .unwrap_or(text)
             .trim()
             .replace('-', "_");
+        let name = own_name(&name);
         if !free.iter().any(|free| free.name == name) {
             return Err(Error::Input(format!(
                 "`bounds` {text:?}: {name} is not fitted"

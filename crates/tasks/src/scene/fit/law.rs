@@ -3,6 +3,7 @@
 use super::given::{Given, bounds, unknown_bounds};
 use super::options::{FitOptions, USUALLY_FREE};
 use super::plan::{FitPlan, Piece, Recording, WithProblem};
+use crate::scene::shipped::shipped_law;
 use crate::scene::text::TextSlider;
 use std::path::Path;
 use twinslip::error::{Error, Result, did_you_mean};
@@ -67,6 +68,15 @@ impl WithProblem for SteadyBand<'_> {
     }
 }
 
+/// The name that a fit has for a parameter of the second state variable, which models call otherwise.
+pub(super) fn own_name(name: &str) -> &str {
+    match name {
+        "second_evolution_effect" => "evolution_effect_2",
+        "second_slip_length" => "slip_length_2",
+        other => other,
+    }
+}
+
 impl LawToFit {
     pub(super) fn new(
         name: &str,
@@ -79,7 +89,10 @@ impl LawToFit {
         if !(1..=2).contains(&states) {
             return Err(Error::parameter("states", states, "1 or 2"));
         }
-        let is_file = name.ends_with(".toml") || name.contains('\n') || Path::new(name).is_file();
+        let is_file = name.ends_with(".toml")
+            || name.contains('\n')
+            || Path::new(name).is_file()
+            || shipped_law(Path::new(name)).is_some();
         let (model, has) = if is_file && !AnyLaw::NAMES.contains(&name) {
             if states == 2 {
                 let what = "`states` 2: laws from files have one state variable";
@@ -111,7 +124,7 @@ impl LawToFit {
         let asked = options.free.clone();
         let mut names: Vec<String> = Vec::new();
         for name in asked.as_deref().unwrap_or(&usual).split(',').map(str::trim) {
-            let name = name.replace('-', "_");
+            let name = own_name(&name.replace('-', "_")).to_owned();
             let known = has.contains(&name.as_str()) || name == DRIFT;
             let alone = !options.law.contains(',');
             if !known && asked.is_some() && alone {

@@ -42,10 +42,10 @@ pub struct FitOptions {
     #[arg(long, value_name = "L", value_parser = number, allow_negative_numbers = true, help_heading = "Model")]
     pub slip_length: Option<f64>,
     /// b of the second state variable
-    #[arg(long, value_name = "b_2", value_parser = number, allow_negative_numbers = true, help_heading = "Model")]
+    #[arg(long, alias = "second-evolution-effect", value_name = "b_2", value_parser = number, allow_negative_numbers = true, help_heading = "Model")]
     pub evolution_effect_2: Option<f64>,
     /// L of the second state variable, in m
-    #[arg(long, value_name = "L_2", value_parser = number, allow_negative_numbers = true, help_heading = "Model")]
+    #[arg(long, alias = "second-slip-length", value_name = "L_2", value_parser = number, allow_negative_numbers = true, help_heading = "Model")]
     pub slip_length_2: Option<f64>,
     /// Friction coefficient at V*
     #[arg(long, value_name = "a_v", value_parser = number, allow_negative_numbers = true, help_heading = "Model")]

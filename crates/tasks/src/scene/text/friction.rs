@@ -4,10 +4,10 @@ use super::law_file::LawFile;
 use twinslip::error::{Error, Result};
 use twinslip::number::{Interval, Jet, Real, Uncertain, bracketed_root};
 
-/// How far zeros are looked for, of ln psi and of tau, and the factor from one distance to the next, from 1 on: a slip rate may have a pole not
-/// far beyond the zero.
+/// How far zeros are looked for, of ln psi and of tau, and the factors from one distance to the next, from 1 on; the second one where the first
+/// finds none, as a slip rate may have a pole not far beyond the zero.
 const FARTHEST: f64 = 512.0;
-const FARTHER: f64 = 1.25;
+const FARTHER: [f64; 2] = [1.25, 1.02];
 /// Powers of two by which a bound is widened until it holds.
 const WIDENINGS: i32 = 40;
 
@@ -219,35 +219,41 @@ fn rising_zero(
     function: impl Fn(Jet<f64, 1>) -> Jet<f64, 1>,
 ) -> Result<f64> {
     let at = |x: f64| function(Jet::variable(x, 0));
-    let next = |distance: &f64| Some(distance * FARTHER).filter(|next| *next < FARTHEST * FARTHER);
+    let bracket = FARTHER
+        .into_iter()
+        .find_map(|factor| bracket(from, factor, |x| at(x).value));
+    let Some((low, high)) = bracket else {
+        return Err(Error::NotConverged {
+            what,
+            iterations: FARTHEST.log(FARTHER[1]) as usize,
+            residual: at(from).value.abs(),
+            tolerance: 0.0,
+        });
+    };
+    bracketed_root(what, low, high, |x| {
+        let Jet { value, gradient } = at(x);
+        (value, gradient[0])
+    })
+}
+
+/// The nearest place, on either side, in which a function rises through zero, between distances that grow by a factor.
+fn bracket(from: f64, factor: f64, at: impl Fn(f64) -> f64) -> Option<(f64, f64)> {
+    let next = |distance: &f64| Some(distance * factor).filter(|next| *next < FARTHEST * factor);
     let distances = std::iter::successors(Some(1.0), next);
     let (mut low, mut high) = (from, from);
-    let (mut at_low, mut at_high) = (at(from).value, at(from).value);
+    let (mut at_low, mut at_high) = (at(from), at(from));
     for distance in std::iter::once(0.0).chain(distances) {
         let (next_low, next_high) = (from - distance, from + distance);
-        let values = (at(next_low).value, at(next_high).value);
-        // The nearest bracket, on either side.
-        let bracket = if at_high <= 0.0 && values.1 >= 0.0 {
-            Some((high, next_high))
-        } else if values.0 <= 0.0 && at_low >= 0.0 {
-            Some((next_low, low))
-        } else {
-            None
-        };
-        if let Some((low, high)) = bracket {
-            return bracketed_root(what, low, high, |x| {
-                let Jet { value, gradient } = at(x);
-                (value, gradient[0])
-            });
+        let values = (at(next_low), at(next_high));
+        if at_high <= 0.0 && values.1 >= 0.0 {
+            return Some((high, next_high));
+        }
+        if values.0 <= 0.0 && at_low >= 0.0 {
+            return Some((next_low, low));
         }
         (low, high, at_low, at_high) = (next_low, next_high, values.0, values.1);
     }
-    Err(Error::NotConverged {
-        what,
-        iterations: FARTHEST.log(FARTHER) as usize,
-        residual: at(from).value.abs(),
-        tolerance: 0.0,
-    })
+    None
 }
 
 /// How far on either side of x a function certainly has opposite signs; infinite where no such distance is found.

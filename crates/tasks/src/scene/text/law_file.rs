@@ -247,7 +247,7 @@ fn read<'a>(reader: Reader<'a>, table: &'a DeTable<'_>) -> Result<Tables<'a>> {
         ),
         (
             "evolution",
-            "at which rate does the state change, in v, psi and stress_rate?",
+            "at which rate does the state change, in v and psi?",
         ),
     ] {
         let Some((key, value)) = table.get_key_value(name) else {

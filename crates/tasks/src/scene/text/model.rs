@@ -8,7 +8,7 @@ use crate::scene::file::read_bounded;
 use crate::scene::options::ModelOptions;
 use crate::scene::program::{Program, Stretch};
 use crate::scene::set::assignments;
-use crate::scene::shipped::{shipped_law, shipped_system, shipped_system_names};
+use crate::scene::shipped::{law_names, shipped_law, shipped_system, shipped_system_names};
 use crate::scene::system::Described;
 use crate::scene::units::{Quantity, Units};
 use serde_json::{Map, Value, json};
@@ -17,7 +17,6 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use twinslip::error::{Error, Result, did_you_mean};
 use twinslip::field::Vector;
-use twinslip::friction::AnyLaw;
 use twinslip::integrate::AnyField;
 use twinslip::model::TextSystem;
 use twinslip::number::{Interval, Uncertain};
@@ -428,7 +427,7 @@ fn built_in_law(name: &str) -> Result<LawFile> {
     let text = shipped_law(Path::new(name));
     LawFile::parse(
         name,
-        text.ok_or_else(|| Error::unknown("law", name, &AnyLaw::NAMES))?,
+        text.ok_or_else(|| Error::unknown("law", name, &law_names()))?,
     )
 }
 

@@ -369,12 +369,11 @@ impl TextSlab {
         for i in 0..self.counts.len() {
             let friction = self.friction(system, i);
             for k in 0..RATES {
-                // A single one slides at V_H.
-                let part = match layout.parts {
-                    1 => 0.0,
-                    _ => k as f64 / (RATES - 1) as f64,
+                // What moves alike has equal parts of V_H.
+                let v = match self.counts[..] {
+                    [count] => driving / count as f64,
+                    _ => driving * LEAST.powf(k as f64 / (RATES - 1) as f64),
                 };
-                let v = driving * LEAST.powf(part);
                 let steady = friction.steady(v)?;
                 put(0, steady.stress);
                 for (which, w) in steady.log_states.into_iter().enumerate() {

@@ -9,7 +9,7 @@ use crate::scene::system::{damping, scales};
 use crate::scene::units::{Quantity, TimeUnit, Units};
 use crate::scene::words::indexed;
 use twinslip::error::{Error, Result};
-use twinslip::friction::{AnyLaw, Law, Parameters, positive};
+use twinslip::friction::positive;
 
 /// Parameters of built-in laws that are not negative.
 const POSITIVE: [&str; 7] = [
@@ -64,20 +64,26 @@ pub(super) fn counts(options: &SlabOptions) -> Result<Vec<usize>> {
 /// SI by the slip length, the normal stress and a of the first interface; no units where that is not asked for.
 ///
 /// # Errors
-/// [`Error::Input`] in SI for a law from a file.
+/// [`Error::Input`] in SI for a law from a file that the user has.
 pub(super) fn units(law: &LawFile, slab: &SlabOptions) -> Result<Units> {
     if !slab.si {
         return Ok(Units::none());
     }
-    if slab.law_file().is_some() {
+    if slab.law_file().is_some() && !slab.law_is_shipped() {
         return Err(Error::Input(format!(
             "`si`: the law {} is from a file, whose numbers have no units",
             law.name
         )));
     }
-    let first = first(slab)?;
-    let bounds = AnyLaw::named(&slab.law, Parameters::heslot_1994())?.bounds_state();
-    let units = Units::new(Some(scales(&first)?), !bounds);
+    let mut first = first(slab)?;
+    if first.direct_effect.is_none() {
+        let own = law
+            .parameters
+            .iter()
+            .find(|(name, _)| name == "direct_effect");
+        first.direct_effect = own.map(|(_, a)| *a);
+    }
+    let units = Units::new(Some(scales(&first)?), !law.bounds_state());
     Ok(units.in_time(TimeUnit::named(&slab.time_unit)?))
 }
 

@@ -72,7 +72,11 @@ pub(super) fn law(name: &str) -> &str {
 /// What the parameter of this name measures; `None` where that is not known, as of a law from a file.
 pub(super) fn measures(name: &str) -> Option<Kind> {
     Some(match indexed(name).0 {
-        "driving" | REFERENCE_RATE => Kind::Velocity,
+        "driving"
+        | REFERENCE_RATE
+        | "direct_cutoff_rate"
+        | "evolution_cutoff_rate"
+        | "weakening_rate" => Kind::Velocity,
         "stiffness" => Kind::Stiffness,
         "damping" => Kind::Damping,
         "healing_time" => Kind::Time,
