@@ -74,8 +74,45 @@ pub fn of_run(holds: &[HoldOfRun]) -> Value {
     each.collect()
 }
 
+/// The holds of a run in words, one a line.
+pub fn run_in_words(holds: &[HoldOfRun]) -> Vec<String> {
+    let each = holds.iter().map(|hold| {
+        let (before, least) = hold.stress;
+        let begun = format!(
+            "hold of {} at {}: stress falls from {} to {}",
+            seven_digits(hold.duration),
+            seven_digits(hold.start),
+            seven_digits(before),
+            seven_digits(least)
+        );
+        let Some(peak) = hold.peak else {
+            return format!("{begun}, and reaches no peak after it");
+        };
+        let healing = peak - before;
+        let friction = hold.friction.map_or(String::new(), |by| {
+            format!(", {} of friction", seven_digits(healing * by))
+        });
+        format!(
+            "{begun}, peak {}, healing {}{friction}",
+            seven_digits(peak),
+            seven_digits(healing)
+        )
+    });
+    let rate = healing_of_run(holds).map(|rate| {
+        format!(
+            "healing rate {} of friction per decade",
+            seven_digits(rate.value)
+        )
+    });
+    each.chain(rate).collect()
+}
+
 /// `result.healing_rate` of a run; its error is how far the holds are from a straight line.
 pub fn rate_of_run(holds: &[HoldOfRun]) -> Value {
+    json!(healing_of_run(holds).map(estimate))
+}
+
+fn healing_of_run(holds: &[HoldOfRun]) -> Option<Estimate> {
     let healing = holds.iter().filter_map(|hold| {
         let value = (hold.peak? - hold.stress.0) * hold.friction?;
         let exact = Estimate {
@@ -84,7 +121,7 @@ pub fn rate_of_run(holds: &[HoldOfRun]) -> Value {
         };
         Some((hold.duration, exact))
     });
-    json!(healing_rate(healing).map(estimate))
+    healing_rate(healing)
 }
 
 /// In words, one a line.

@@ -222,6 +222,9 @@ pub fn integrate(
         report.draw(path, &picture)?;
     }
     report.say(summary(&outcome, events, seconds));
+    for line in holds::run_in_words(&outcome.holds) {
+        report.say(line);
+    }
     if let Some(fault) = plan.fault(&outcome) {
         report.say(fault::line(&fault, plan.system().units()));
     }
