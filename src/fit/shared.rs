@@ -19,8 +19,8 @@ pub struct Agreement {
     pub degrees_of_freedom: usize,
     /// How often records that agree have such a Q, or a larger one.
     pub probability: f64,
-    /// By what the standard error is multiplied as the records differ more than their noise explains: the square root of Q over its degrees
-    /// of freedom (Birge 1932), 1 where they agree.
+    /// By what standard errors are multiplied as the records differ more than their noise explains: the square root of Q over its degrees of
+    /// freedom (Birge 1932), 1 where they agree.
     pub widening: f64,
     /// Records without which the others agree: the fewest, and less than half of them.
     pub outlying: Vec<usize>,
@@ -117,11 +117,10 @@ fn variable(one: &FittedParameter) -> (f64, f64) {
 }
 
 impl Fit {
-    /// Errors as many times larger as records differ more in a parameter that they share than their noise explains.
-    pub fn widen(&mut self, agreement: &Agreement) {
-        let by = agreement.widening;
-        let all = self.parameters.iter_mut().enumerate();
-        for (i, one) in all.filter(|(_, one)| one.name == agreement.name) {
+    /// All errors as many times larger as records differ more in what they share than their noise explains: what one parameter cannot be the others
+    /// make up for.
+    pub fn widen(&mut self, by: f64) {
+        for (i, one) in self.parameters.iter_mut().enumerate() {
             let best = one.scale.inward(one.value);
             let end =
                 |end: f64, scale: Scale| scale.outward(best + by * (scale.inward(end) - best));

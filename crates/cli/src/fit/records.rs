@@ -105,7 +105,7 @@ pub fn lines(plan: &FitPlan, fitted: &Fitted<'_>) -> Vec<String> {
                 false => format!("; far from the others: {}", far.join(", ")),
             };
             lines.push(format!(
-                "the records differ in {name} more than their noise explains (probability {probability:.1e}): its error is widened by {widening:.2}{far}"
+                "the records differ in {name} more than their noise explains (probability {probability:.1e}), and all errors are widened, for this by {widening:.3}{far}"
             ));
         }
     }

@@ -1,10 +1,14 @@
 //! Holds as a picture: how far friction falls and how it heals with time.
 
 use twinslip::fit::{Estimate, Hold, Levels, healing_rate};
-use twinslip_output::plot::{Axis, Bars, Drawing, Mark, Panel, PlotSeries, Stroke, Symbol};
+use twinslip_output::plot::{Axis, Bars, Drawing, Mark, Panel, PlotSeries, Symbol};
 
 /// Standard errors on each side of 95 %.
 const SIDE: f64 = 1.96;
+/// How far the axis goes beyond the holds, as a factor.
+const BESIDE: f64 = 1.5;
+/// The colour of what was fitted.
+const FITTED: usize = 6;
 
 /// The holds that were measured with how healing grows with the time of the hold.
 pub fn measured_healing(holds: &[Hold]) -> Option<Estimate> {
@@ -42,18 +46,21 @@ pub fn picture_of_holds(holds: &[Hold]) -> Drawing {
 type Shown<'a> = (&'a dyn Fn(&Levels<Estimate>) -> Estimate, usize);
 
 fn panel(holds: &[Hold], title: &str, y: &str, shown: &[Shown<'_>]) -> Panel {
-    let mut sorted: Vec<&Hold> = holds.iter().collect();
-    sorted.sort_by(|one, other| one.duration.total_cmp(&other.duration));
-    let mut panel = Panel::new(title, Axis::log("hold [s]"), Axis::linear(y));
+    let all = || holds.iter().map(|hold| hold.duration);
+    let (low, high) = (
+        all().fold(f64::INFINITY, f64::min),
+        all().fold(0.0, f64::max),
+    );
+    let along = Axis::log("hold [s]").within(low / BESIDE, high * BESIDE);
+    let mut panel = Panel::new(title, along, Axis::linear(y));
     for (i, (of, colour)) in shown.iter().enumerate() {
-        let fitted = sorted.iter().map(|hold| of(&hold.fitted).value);
+        let colour = *colour;
+        let fitted = holds.iter().map(|hold| of(&hold.fitted).value);
         let label = if i == 0 { "fitted" } else { "" };
-        let along = sorted.iter().map(|hold| hold.duration).collect();
-        let line = PlotSeries::new(label, along, fitted.collect());
         panel
             .series
-            .push(line.stroke(Stroke::Dashed).colour(*colour));
-        let measured = sorted
+            .push(PlotSeries::dots(label, all().collect(), fitted.collect()).colour(FITTED));
+        let measured = holds
             .iter()
             .filter_map(|hold| Some((hold.duration, of(&hold.measured?))));
         panel.marks.extend(measured.map(|(duration, one)| {
@@ -67,7 +74,8 @@ fn panel(holds: &[Hold], title: &str, y: &str, shown: &[Shown<'_>]) -> Panel {
                 },
                 ..Mark::new(duration, one.value, "")
                     .symbol(Symbol::Circle)
-                    .colour(*colour)
+                    .open()
+                    .colour(colour)
             }
         }));
     }

@@ -91,9 +91,8 @@ impl FitPlan {
         let shared = free.iter().filter(|free| free.of_record.is_none());
         let agreements = shared.map(|free| Agreement::of(&free.name, &known));
         let agreements: Vec<Agreement> = agreements.collect();
-        for agreement in &agreements {
-            fit.widen(agreement);
-        }
+        let widening = agreements.iter().map(|one| one.widening);
+        fit.widen(widening.fold(1.0, f64::max));
         let pairs = fits.into_iter().zip(weights);
         Ok(FittedRecords {
             alone: pairs
