@@ -160,7 +160,7 @@ pub struct FitOptions {
     pub each_step: bool,
 
     /// Look at the record without a fit: columns, sampling, gaps, steps of velocity and holds, friction and its noise
-    #[arg(long, conflicts_with_all = ["law", "states", "free", "direct_effect", "evolution_effect", "slip_length", "evolution_effect_2", "slip_length_2", "reference_friction", "healing_time", "residual_strength", "stiffness", "drift", "set", "reference_rate", "load_point", "weights", "bounds", "loss", "loss_scale", "intervals", "crosscheck", "each_step", "plot_parameters", "plot_law", "report"], help_heading = "Output")]
+    #[arg(long, conflicts_with_all = ["law", "states", "free", "each", "direct_effect", "evolution_effect", "slip_length", "evolution_effect_2", "slip_length_2", "reference_friction", "healing_time", "residual_strength", "stiffness", "drift", "set", "reference_rate", "load_point", "weights", "bounds", "loss", "loss_scale", "intervals", "posterior", "prior", "seed", "crosscheck", "each_step", "plot_parameters", "plot_law", "plot_holds", "plot_records", "report"], help_heading = "Output")]
     pub look: bool,
     /// Draw data, fit and residuals, or with --look friction and displacement, as FILE.svg or FILE.png
     #[arg(long, value_name = "FILE", help_heading = "Output")]
@@ -183,4 +183,48 @@ pub struct FitOptions {
     /// Where results go.
     #[command(flatten)]
     pub output: OutputOptions,
+}
+
+#[cfg(test)]
+mod test {
+    use super::FitOptions;
+    use clap::Args;
+
+    /// A look uses what says how a record is read, and refuses all that is of fits.
+    #[test]
+    fn a_look_refuses_what_it_does_not_use() {
+        let mut command = FitOptions::augment_args(clap::Command::new("fit"));
+        command.build();
+        let all: Vec<&clap::Arg> = command.get_arguments().collect();
+        let look = all.iter().find(|arg| arg.get_id() == "look");
+        let refused = command.get_arg_conflicts_with(look.expect("the option"));
+        let used: Vec<&str> = all
+            .iter()
+            .filter(|arg| !refused.contains(arg))
+            .map(|arg| arg.get_id().as_str())
+            .filter(|id| {
+                ![
+                    "help", "look", "output", "format", "force", "quiet", "explain",
+                ]
+                .contains(id)
+            })
+            .collect();
+        assert_eq!(
+            used,
+            [
+                "data",
+                "normal_stress",
+                "program",
+                "driving",
+                "time",
+                "displacement",
+                "friction",
+                "normal_stress_column",
+                "from",
+                "to",
+                "decimate",
+                "plot"
+            ]
+        );
+    }
 }
