@@ -111,10 +111,13 @@ fn cycles_meet_their_references() {
         holds(&orbit["period"], common::number(&values["period"]), 1e-9);
         let known = values["ln_abs_multipliers"].as_array().expect("a list");
         for (i, known) in known.iter().enumerate() {
-            // One of a digit is rounding.
-            if common::number(&case["certain_digits_ln_multipliers"][i]) > 0.0 {
-                let made = &orbit["log_multipliers"][i]["ln_abs"];
-                holds(made, common::number(known), 1e-9);
+            // One below the rounding of the reference is not known there.
+            const FLOOR: f64 = -70.0;
+            let known = common::number(known);
+            let made = &orbit["log_multipliers"][i]["ln_abs"];
+            match known > FLOOR {
+                true => holds(made, known, 1e-9),
+                false => assert!(number(made, "/value") < FLOOR),
             }
         }
         let fastest = number(orbit, "/slip_rate_max");
@@ -199,10 +202,10 @@ fn two_equal_interfaces_keep_their_pitchforks() {
             .collect::<Vec<Value>>()
     };
     let (plain, massive) = (special(""), special("--mass 1e-3"));
-    assert!(!plain.is_empty(), "there are pitchforks");
-    assert_eq!(plain.len(), massive.len());
-    for (plain, massive) in plain.iter().zip(&massive) {
-        holds(massive, number(plain, "/value"), 1e-6);
+    assert!(plain.len() == 1 && !massive.is_empty());
+    // Found on both branches that meet there.
+    for massive in &massive {
+        holds(massive, number(&plain[0], "/value"), 1e-6);
     }
 }
 
