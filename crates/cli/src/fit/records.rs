@@ -110,7 +110,7 @@ pub fn lines(plan: &FitPlan, fitted: &Fitted<'_>) -> Vec<String> {
         }
     }
     if !fitted.together.alone.is_empty() {
-        lines.push("samples count by the inverse variance of their record's residuals, so that a longer record says more".into());
+        lines.push("samples count by the inverse variance of their record's noise, so that a longer record says more".into());
     }
     lines
 }

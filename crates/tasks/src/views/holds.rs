@@ -1,7 +1,7 @@
 //! Holds as a picture: how far friction falls and how it heals with time.
 
 use twinslip::fit::{Estimate, Hold, Levels, healing_rate};
-use twinslip_output::plot::{Axis, Bars, Drawing, Mark, Panel, PlotSeries, Symbol};
+use twinslip_output::plot::{Axis, Bars, Drawing, Mark, Panel, PlotSeries, Stroke, Symbol};
 
 /// Standard errors on each side of 95 %.
 const SIDE: f64 = 1.96;
@@ -55,11 +55,17 @@ fn panel(holds: &[Hold], title: &str, y: &str, shown: &[Shown<'_>]) -> Panel {
     let mut panel = Panel::new(title, along, Axis::linear(y));
     for (i, (of, colour)) in shown.iter().enumerate() {
         let colour = *colour;
-        let fitted = holds.iter().map(|hold| of(&hold.fitted).value);
-        let label = if i == 0 { "fitted" } else { "" };
-        panel
-            .series
-            .push(PlotSeries::dots(label, all().collect(), fitted.collect()).colour(FITTED));
+        for (record, fitted) in by_record(holds).into_iter().enumerate() {
+            let label = if i == 0 && record == 0 { "fitted" } else { "" };
+            let (along, values) = fitted
+                .iter()
+                .map(|hold| (hold.duration, of(&hold.fitted).value))
+                .unzip();
+            let line = PlotSeries::new(label, along, values);
+            panel
+                .series
+                .push(line.stroke(Stroke::Dashed).colour(FITTED));
+        }
         let measured = holds
             .iter()
             .filter_map(|hold| Some((hold.duration, of(&hold.measured?))));
@@ -74,10 +80,23 @@ fn panel(holds: &[Hold], title: &str, y: &str, shown: &[Shown<'_>]) -> Panel {
                 },
                 ..Mark::new(duration, one.value, "")
                     .symbol(Symbol::Circle)
-                    .open()
                     .colour(colour)
             }
         }));
     }
     panel
+}
+
+/// The holds of each record by their duration, one of those that last as long.
+fn by_record(holds: &[Hold]) -> Vec<Vec<&Hold>> {
+    /// Durations nearer to each other than this factor are one.
+    const SAME: f64 = 1.01;
+    let records = holds.chunk_by(|one, other| one.record == other.record);
+    let sorted = records.map(|all| {
+        let mut all: Vec<&Hold> = all.iter().collect();
+        all.sort_by(|one, other| one.duration.total_cmp(&other.duration));
+        all.dedup_by(|next, kept| next.duration < SAME * kept.duration);
+        all
+    });
+    sorted.collect()
 }

@@ -10,7 +10,8 @@ use twinslip::fit::{Agreement, Fit, FittedParameter, FreeParameter, Record};
 pub struct OwnRecord {
     /// Its fit alone.
     pub fit: Result<Fit>,
-    /// By what its samples are multiplied in the fit of all: the inverse variance of its residuals, 1 for the record with the least.
+    /// By what its samples are multiplied in the fit of all: the inverse variance of its residuals, times what correlated noise widens the variance of a
+    /// parameter by; 1 for the record with the least.
     pub weight: f64,
 }
 
@@ -41,7 +42,7 @@ fn weighted<'a>(plan: &'a FitPlan, records: &'a [Record]) -> Vec<Piece<'a>> {
 }
 
 impl FitPlan {
-    /// Fits a law to all records. Of several the samples of each are weighted by the inverse variance of its residuals when it is fitted alone, and
+    /// Fits a law to all records. Of several the samples of each are weighted by the inverse variance of its noise when it is fitted alone, and
     /// count the same otherwise: a longer record says more. Errors are widened where records differ more than their noise explains.
     ///
     /// # Errors
@@ -68,9 +69,14 @@ impl FitPlan {
                 .err()
                 .unwrap_or_else(|| Error::Input("no record is fitted".into())));
         }
+        let variance = |fit: &Fit| {
+            let widenings = fit.parameters.iter().map(|one| one.widening.powi(2));
+            fit.rms.powi(2) * widenings.sum::<f64>() / fit.parameters.len() as f64
+        };
         let squares: Vec<Option<f64>> = fits
             .iter()
-            .map(|one| one.as_ref().ok().map(|fit| fit.rms.powi(2)))
+            .map(|one| one.as_ref().ok().map(variance))
+            .map(|own| own.filter(|own| own.is_finite()))
             .collect();
         let least = squares
             .iter()
