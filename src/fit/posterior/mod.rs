@@ -312,7 +312,7 @@ fn doubts(marginals: &[Marginal], divergences: usize, chains: usize) -> Vec<Stri
         let bad = marginals.iter().filter(|one| is_bad(one));
         bad.map(|one| one.label.as_str()).collect::<Vec<_>>()
     };
-    let apart = named(&|one| !(one.r_hat <= AGREE));
+    let apart = named(&|one| one.r_hat.is_nan() || one.r_hat > AGREE);
     if !apart.is_empty() {
         doubts.push(format!(
             "the chains do not agree on {} (R-hat above {AGREE}): take more draws, or a narrower prior",
@@ -322,7 +322,7 @@ fn doubts(marginals: &[Marginal], divergences: usize, chains: usize) -> Vec<Stri
     let enough = ENOUGH * chains as f64;
     let few = named(&|one| {
         let (middle, ends) = one.effective_sizes;
-        !(f64::min(middle, ends) >= enough)
+        middle.is_nan() || ends.is_nan() || f64::min(middle, ends) < enough
     });
     if !few.is_empty() {
         doubts.push(format!(
