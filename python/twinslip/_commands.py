@@ -58,6 +58,11 @@ class Model:
         evolution_effect: Number = None,
         reference_friction: Number = None,
         damping: Number = None,
+        second_evolution_effect: Number = None,
+        second_slip_length: Number = None,
+        mass: Number = None,
+        modulate: Text = None,
+        normal_stress_coupling: Number = None,
         si: bool = False,
         slip_length: Number = None,
         normal_stress: Number = None,
@@ -75,8 +80,9 @@ class Model:
         law : str, optional
             Friction law, with its equation in the paper or its source: spinodal (35), bounded (6),
             regularised-ageing (5), dieterich-ruina (4) or slip Ruina (1983); ageing is dieterich-
-            ruina. Or a user-defined law: FILE.toml with slip_rate (in tau and psi), evolution (in
-            v and psi) and parameters [default: spinodal]
+            ruina. Or one of composite, cutoff, flash-heating, nagata or perrin-rice-zheng. Or a
+            user-defined law: FILE.toml with slip_rate (in tau and psi), evolution (in v, psi and
+            stress_rate) and parameters [default: spinodal]
         driving : float or str, optional
             Driving velocity V_H [V*; m/s with ``si``]
         stiffness : float or str, optional
@@ -104,6 +110,22 @@ class Model:
         damping : float or str, optional
             Radiation damping eta V*/(a sigma): tau - eta v stands in place of tau in the law
             [default: 0; eta in Pa s/m with ``si``]
+        second_evolution_effect : float or str, optional
+            Evolution effect b2 of a second state variable, which may be negative: tau gains b2
+            ln(theta_2 V*/L2)/a, and theta_2 evolves by the law with L2. Needs
+            ``second_slip_length``
+        second_slip_length : float or str, optional
+            Slip length L2 of the second state variable [L; m with ``si``]
+        mass : float or str, optional
+            Mass m of an interface per area, m V*^2/(a sigma L): m dv/dt is the stress less the
+            friction at v, and v a variable of its own [default: 0, without inertia; m in kg/m^2
+            with ``si``]
+        modulate : str, number or sequence, optional
+            Let driving or normal_stress vary, as its value times 1 + EPS cos(2 pi (t/PERIOD +
+            PHASE)); repeatable. For integrate, and for solve_ivp in Python
+        normal_stress_coupling : float or str, optional
+            Coefficient alpha of Linker and Dieterich (1992), for a normal stress sigma that
+            varies: dtheta/dt has the term -(alpha theta/b) (dsigma/dt)/sigma [default: 0]
         si : bool, optional
             All input and output in SI units; implied by a value with a unit, such as 10um, 50MPa,
             1nm/s or 500year
@@ -218,10 +240,11 @@ class Commands:
             Initial state: TAU,PSI1,PSI2 (TAU,PSI for one interface), or near-symmetric[:EPS]: tau
             and psi1 at the symmetric steady state and psi2 = psi1 exp(EPS), EPS = 0.01 by default,
             or -0.01 where psi2 would exceed 1; unequal interfaces start at their steady states at
-            V_H/2, the second psi times exp(EPS) [default: near-symmetric]. For N interfaces or
-            clusters: one psi each, or spread[:EPS[:SEED]], psi at the steady state times exp(EPS
-            z) with z drawn between -1 and 1 [default from 8 interfaces on]. For a system from a
-            file: all states in order [default: its table start]
+            V_H/2, the second psi times exp(EPS) [default: near-symmetric; of one interface under a
+            program near-symmetric:0, its steady state]. For N interfaces or clusters: one psi
+            each, or spread[:EPS[:SEED]], psi at the steady state times exp(EPS z) with z drawn
+            between -1 and 1 [default from 8 interfaces on]. For a system from a file: all states
+            in order [default: its table start]
         program : str or sequence of (time, V_H) and ((begin, end), V_H), optional
             Changes of V_H, which begins at ``driving``: "T:V,T:V,..." for steps to V at T, where V
             = 0 is a hold, and "T1-T2:V" for a ramp; or FILE.csv with the columns time, driving
@@ -442,10 +465,11 @@ class Commands:
             Initial state: TAU,PSI1,PSI2 (TAU,PSI for one interface), or near-symmetric[:EPS]: tau
             and psi1 at the symmetric steady state and psi2 = psi1 exp(EPS), EPS = 0.01 by default,
             or -0.01 where psi2 would exceed 1; unequal interfaces start at their steady states at
-            V_H/2, the second psi times exp(EPS) [default: near-symmetric]. For N interfaces or
-            clusters: one psi each, or spread[:EPS[:SEED]], psi at the steady state times exp(EPS
-            z) with z drawn between -1 and 1 [default from 8 interfaces on]. For a system from a
-            file: all states in order [default: its table start]
+            V_H/2, the second psi times exp(EPS) [default: near-symmetric; of one interface under a
+            program near-symmetric:0, its steady state]. For N interfaces or clusters: one psi
+            each, or spread[:EPS[:SEED]], psi at the steady state times exp(EPS z) with z drawn
+            between -1 and 1 [default from 8 interfaces on]. For a system from a file: all states
+            in order [default: its table start]
         surface : str, number or sequence, optional
             Section of the return map, STATE=VALUE; of interfaces stress=VALUE or
             log_state_1=VALUE, or stress=auto for the steady stress at the mean slip rate,
@@ -781,6 +805,7 @@ class Commands:
         *,
         states: Count = None,
         free: Text = None,
+        each: Text = None,
         evolution_effect_2: Number = None,
         slip_length_2: Number = None,
         stiffness: Text = None,
@@ -799,17 +824,22 @@ class Commands:
         loss: Text = None,
         loss_scale: Number = None,
         intervals: Text = None,
+        posterior: Count = None,
+        prior: Text = None,
+        seed: Count = None,
         crosscheck: bool = False,
         each_step: bool = False,
+        plot_holds: bool = False,
+        plot_records: bool = False,
         progress: Optional[bool] = None,
     ) -> Fit:
         r"""Friction parameters from laboratory data: velocity steps fitted by least squares, with errors and 95 % intervals.
 
         Parameters
         ----------
-        data : path, mapping of columns or DataFrame, optional
+        data : path, mapping of columns or DataFrame, or a list of these, optional
             The record: CSV, TSV or columns of text, with or without a header; units in its
-            parentheses, such as Displ(um)
+            parentheses, such as Displ(um). Several records are fitted together
         states : int, optional
             State variables: 1 or 2 [default: 1]
         free : str or sequence of str, optional
@@ -818,6 +848,9 @@ class Commands:
             those of a law from a file. Parameters with neither a value nor a default are fitted
             too [default: direct_effect,evolution_effect,slip_length,stiffness,reference_friction,
             with ``states`` 2 also evolution_effect_2,slip_length_2]
+        each : str or sequence of str, optional
+            Of several records, parameters that each has its own of, comma-separated; the others
+            are shared [default: those of stiffness,reference_friction,drift that are fitted]
         evolution_effect_2 : float or str, optional
             b of the second state variable
         slip_length_2 : float or str, optional
@@ -860,11 +893,22 @@ class Commands:
         intervals : str, number or sequence, optional
             95 % intervals: by profile, or linear from the standard errors, which is faster
             [default: profile]
+        posterior : int, optional
+            Also draw so many times from the posterior, by the No-U-Turn sampler in four chains
+        prior : str, number or sequence, optional
+            Prior of a parameter, NAME=normal:MEAN:DEVIATION, uniform:A:B or log-uniform:A:B;
+            repeatable [default: wide ones, as the result says]
+        seed : int, optional
+            Seed of the draws [default: 1]
         crosscheck : bool, optional
             Recompute the derivatives at the minimum by sensitivities of CVODES, and report the
             largest difference
         each_step : bool, optional
             Also fit each velocity step separately
+        plot_holds : bool, optional
+            Draw healing and the friction at the end of holds against their duration
+        plot_records : bool, optional
+            Draw what each of several records says of the parameters that they share
         progress : bool, optional
             Whether a long computation shows a bar, by tqdm [default: in a notebook and on a
             terminal].
