@@ -16,20 +16,30 @@ pub enum Change {
 use Change::{Exempt, File, To, With};
 
 /// What is refused for every kind that is run here: of two commands that share their options what is of orbits alone, what a law has none of, and all
-/// clusters where all steady states are found. What varies is given to no run of these kinds.
-pub const NEVER: [(&str, &str); 12] = [
+/// clusters where all steady states are found; what varies in time where that is no variable. What varies is given to no run of these kinds.
+pub const NEVER: [(&str, &str); 22] = [
     ("branch equilibria", "crosscheck"),
     ("branch equilibria", "doublings"),
+    ("branch equilibria", "modulate"),
+    ("branch equilibria", "normal-stress-coupling"),
     ("branch equilibria", "period-guess"),
     ("branch orbits", "driving"),
     ("equilibria", "clusters"),
+    ("equilibria", "modulate"),
+    ("equilibria", "normal-stress-coupling"),
     ("law", "clusters"),
+    ("law", "modulate"),
+    ("law", "normal-stress-coupling"),
     ("law", "system"),
     ("locus hopf", "crosscheck"),
     ("locus hopf", "driving"),
     ("locus hopf", "period-guess"),
     ("locus hopf", "stiffness"),
     ("locus hopf", "system"),
+    ("section", "modulate"),
+    ("section", "normal-stress-coupling"),
+    ("sweep", "modulate"),
+    ("sweep", "normal-stress-coupling"),
 ];
 
 /// To what an option is changed, so that something must come of it; `None` where nobody has thought of that.
@@ -356,6 +366,10 @@ fn model_change(command: &str, kind: Kind, option: &str) -> Option<Change> {
         "evolution-effect" => To("0.05"),
         "reference-friction" => To("0.38"),
         "damping" => To(if si { "1e7" } else { "0.01" }),
+        // All steady states in a box of more dimensions, for each value on the way.
+        "second-evolution-effect" | "second-slip-length" | "mass" if command == "locus hopf" => {
+            Exempt
+        }
         "second-evolution-effect" => With(
             if si {
                 "--second-slip-length 4e-6 --second-evolution-effect 1e-3"
