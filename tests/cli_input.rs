@@ -213,7 +213,7 @@ fn wrong_names_are_answered_by_the_nearest() {
     for (arguments, sentence) in [
         (
             format!("{RUN} --law dietrich-ruina"),
-            "law is dietrich-ruina, but must be one of spinodal, bounded, regularised-ageing, dieterich-ruina, slip; did you mean \"dieterich-ruina\"?",
+            "law is dietrich-ruina, but must be one of spinodal, bounded, regularised-ageing, dieterich-ruina, slip, composite, cutoff, flash-heating, nagata, perrin-rice-zheng; did you mean \"dieterich-ruina\"?",
         ),
         (
             format!("{RUN} --law regularised_ageing"),
