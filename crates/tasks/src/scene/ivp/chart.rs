@@ -70,7 +70,7 @@ impl Chart {
             Given::States => x.max(f64::MIN_POSITIVE) * state,
         };
         into.push(y[0] * stress);
-        into.extend(y[1..].iter().map(psi));
+        into.extend(y[1..self.variables].iter().map(psi));
         if self.doubled {
             into.extend(y.last().map(psi));
         }
@@ -87,7 +87,7 @@ impl Chart {
             Given::States => x * state,
         };
         let mut values = vec![y[0] * stress];
-        values.extend(y[1..].iter().map(psi));
+        values.extend(y[1..self.variables].iter().map(psi));
         if self.doubled {
             values.extend(y.last().map(psi));
         }
