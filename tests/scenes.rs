@@ -281,7 +281,7 @@ fn what_is_wrong_in_a_scene_is_said_with_its_line() {
         (
             format!("{good}law = \"spinodl\""),
             5,
-            "law is spinodl, but must be one of spinodal, bounded, regularised-ageing, dieterich-ruina, slip; did you mean \"spinodal\"?",
+            "law is spinodl, but must be one of spinodal, bounded, regularised-ageing, dieterich-ruina, slip, composite, cutoff, flash-heating, nagata, perrin-rice-zheng; did you mean \"spinodal\"?",
         ),
         (format!("{good}driving = 3"), 5, "duplicate key"),
         (format!("{good}rtol = "), 5, ""),
