@@ -224,6 +224,38 @@ fn draws_agree_with_the_fit_and_go_into_ensembles() {
     assert!(law["result"].is_object(), "{law}");
 }
 
+/// Ctrl-C on the way through the posterior ends it, not what is known by then.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_posterior_keeps_the_fit() {
+    use std::io::{BufRead, BufReader};
+    use std::process::{Command, Stdio};
+
+    let path = file("interrupted", &steps(1e-4, 2000.0), 2000, 10);
+    let object_of = folder("fit_laboratory_interrupted_of").join("fit.json");
+    let words = format!("fit {path} --posterior 4000000 -o {}", object_of.display());
+    let mut child = command::program()
+        .args(words.split_whitespace())
+        .env("TWINSLIP_PROGRESS", "0.02")
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let said = BufReader::new(child.stderr.take().expect("messages"));
+    let mut lines = said.lines();
+    let drawing = |line: std::io::Result<String>| line.expect("text").contains("drawing");
+    assert!(lines.any(drawing), "no draw came");
+    let pid = child.id().to_string();
+    let sent = Command::new("kill").args(["-INT", &pid]).status();
+    assert!(sent.expect("kill").success());
+    lines.for_each(drop);
+    assert_eq!(child.wait().expect("it ends").code(), Some(130));
+    let made: Value =
+        serde_json::from_str(&fs::read_to_string(&object_of).expect("a file")).expect("JSON");
+    assert_eq!(made["result"]["fit"]["verdict"], "converged");
+    assert!(made["result"]["posterior"].is_null());
+}
+
 #[test]
 fn priors_hold_where_the_data_say_nothing() {
     let path = file("priors", &steps(1e-4, 2000.0), 2000, 7);

@@ -127,7 +127,6 @@ fn covariance(fit: &Fit) -> DMatrix<f64> {
 /// The friction of the fit at the end of the hold, at the peak and before the hold, and when the peak is.
 struct At {
     peak: f64,
-    minimum: f64,
     friction: [f64; 3],
 }
 
@@ -201,15 +200,7 @@ impl<const N: usize> Model<'_, N> {
             healing: estimate(friction[2] - friction[0], &(most - before)),
         };
         let friction = [friction[0], friction[1], friction[2]];
-        let minimum = end;
-        Ok((
-            levels,
-            At {
-                peak,
-                minimum,
-                friction,
-            },
-        ))
+        Ok((levels, At { peak, friction }))
     }
 }
 
@@ -238,7 +229,7 @@ impl Shown<'_> {
         let [before, least, most] = at.friction;
         let windows = (
             flat(rows(begun, start), start, before),
-            flat(rows(start, end), at.minimum, least),
+            flat(rows(start, end), end, least),
             flat(rows(end, after), at.peak, most),
         );
         let (Some(before_rows), Some(least_rows), Some(most_rows)) = windows else {

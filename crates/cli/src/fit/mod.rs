@@ -96,26 +96,30 @@ pub fn run(options: &FitOptions, call: &Call) -> Result<Ending> {
     }
     let mut progress = report.progress();
     let mut found = Vec::with_capacity(plan.laws.len());
+    let mut stopped = false;
     for (i, law) in plan.laws.iter().enumerate() {
         let number = match plan.laws.len() {
             1 => String::new(),
             all => format!(", {} of {all}", i + 1),
         };
         progress.begin(&format!("fitting the law {}{number}", law.name));
-        let fitted = fitted(&plan, law, options)?;
-        found.push(match plan.sampling.get(i) {
-            None => fitted,
-            Some(sampling) => {
-                progress.begin(&format!(
-                    "drawing from the posterior of {}{number}",
-                    law.name
-                ));
-                call.watch();
-                let drawn = draw(&plan, fitted, sampling, call);
-                call.unwatch();
-                drawn?
-            }
-        });
+        let mut fitted = fitted(&plan, law, options)?;
+        if let Some(sampling) = plan.sampling.get(i).filter(|_| !stopped) {
+            progress.begin(&format!(
+                "drawing from the posterior of {}{number}",
+                law.name
+            ));
+            call.watch();
+            let drawn = draw(&plan, &fitted, sampling, call);
+            call.unwatch();
+            // The fit is kept.
+            stopped = matches!(drawn, Err(Error::Interrupted));
+            fitted.drawn = match drawn {
+                Err(Error::Interrupted) => None,
+                drawn => Some(drawn?),
+            };
+        }
+        found.push(fitted);
     }
     // The law with the most information first.
     let least = |one: &Fitted<'_>| one.comparison.map_or(0.0, |comparison| comparison.akaike);
@@ -189,6 +193,7 @@ pub fn run(options: &FitOptions, call: &Call) -> Result<Ending> {
         report.say(line);
     }
     Ok(match written {
+        Ending::Done if stopped => Ending::Interrupted,
         Ending::Done if best.fit().verdict.name() != "converged" => report.undecided(format_args!(
             "the fit, as {}; give that parameter a value, or use a record that determines it",
             undecided.join("; ")
@@ -238,24 +243,15 @@ fn fitted<'a>(plan: &FitPlan, law: &'a LawToFit, options: &FitOptions) -> Result
     })
 }
 
-fn draw<'a>(
-    plan: &FitPlan,
-    fitted: Fitted<'a>,
-    sampling: &Sampling,
-    call: &Call,
-) -> Result<Fitted<'a>> {
+fn draw(plan: &FitPlan, fitted: &Fitted<'_>, sampling: &Sampling, call: &Call) -> Result<Drawn> {
     let stop = call.flag();
     let goes_on = || !stop.load(Ordering::Relaxed);
     let given = (&fitted.together, sampling);
     let (posterior, minima) = plan.posterior(fitted.law, given, &goes_on)?;
-    let drawn = Drawn {
+    Ok(Drawn {
         posterior,
         sampling: sampling.clone(),
         minima: minima.len(),
-    };
-    Ok(Fitted {
-        drawn: Some(drawn),
-        ..fitted
     })
 }
 
