@@ -4,8 +4,7 @@
 //! their weights and turns are looked for across subtrees as by Betancourt, M. (2017). A conceptual introduction to Hamiltonian Monte Carlo.
 //! arXiv:1701.02434.
 //!
-//! Our own, as the sampler on crates.io that is well kept brings a second linear algebra, a data frame and a file format along, which take
-//! longer to compile than this library.
+//! Our own: `vendor-notes/sampler.md`.
 
 use nalgebra::{DMatrix, DVector};
 use rand_chacha::ChaCha8Rng;
