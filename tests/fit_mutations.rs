@@ -93,7 +93,8 @@ fn a_damaged_record_never_ends_in_a_panic() {
             let ended = run(&words);
             // A fit that finds no friction at any start is a failure with a sentence.
             let is_ended = [0, 2, 3].contains(&ended.code) || ended.code == 1 && words.len() == 5;
-            let is_told = ended.code == 0 || ended.err.lines().count() >= 1;
+            // What is undecided is in the object, and -q says nothing beside it.
+            let is_told = [0, 3].contains(&ended.code) || ended.err.lines().count() >= 1;
             proptest::prop_assert!(
                 is_ended && is_told,
                 "{words:?}: {} {}",
