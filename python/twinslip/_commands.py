@@ -829,8 +829,6 @@ class Commands:
         seed: Count = None,
         crosscheck: bool = False,
         each_step: bool = False,
-        plot_holds: bool = False,
-        plot_records: bool = False,
         progress: Optional[bool] = None,
     ) -> Fit:
         r"""Friction parameters from laboratory data: velocity steps fitted by least squares, with errors and 95 % intervals.
@@ -905,10 +903,6 @@ class Commands:
             largest difference
         each_step : bool, optional
             Also fit each velocity step separately
-        plot_holds : bool, optional
-            Draw healing and the friction at the end of holds against their duration
-        plot_records : bool, optional
-            Draw what each of several records says of the parameters that they share
         progress : bool, optional
             Whether a long computation shows a bar, by tqdm [default: in a notebook and on a
             terminal].
