@@ -40,6 +40,8 @@ pub use twinslip_model::{expression, field, friction, model, number, series};
 
 pub mod contract;
 
+pub mod random;
+
 #[cfg(feature = "sundials")]
 pub mod sundials;
 

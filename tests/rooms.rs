@@ -18,6 +18,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
         &["friction", "field", "series", "expression", "number"],
     ),
     ("contract", &[]),
+    ("random", &[]),
     ("sundials", &["field", "contract"]),
     (
         "integrate",
@@ -51,6 +52,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "sweep",
         &[
+            "random",
             "section",
             "equilibrium",
             "integrate",
@@ -89,6 +91,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "fit",
         &[
+            "random",
             "integrate",
             "model",
             "field",
@@ -100,6 +103,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "scene",
         &[
+            "random",
             "fit",
             "many",
             "sundials",
@@ -155,6 +159,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "cli",
         &[
+            "random",
             "paper",
             "views",
             "scene",

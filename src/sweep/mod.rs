@@ -23,7 +23,7 @@ mod sweeper;
 mod transient;
 mod watch;
 
-pub use points::{Enclosure, RandomStart, SectionPlace, SystemPoint, SystemPoints};
+pub use points::{Enclosure, SectionPlace, SystemPoint, SystemPoints};
 
 pub use range::Range;
 #[doc(hidden)]

@@ -7,9 +7,8 @@ use crate::field::Vector;
 use crate::friction::AnyLaw;
 use crate::integrate::{AnyField, MotionUnits};
 use crate::model::Loading;
+use crate::random::Random;
 use crate::section::Surface;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 use std::fmt::Debug;
 
 /// Systems by the values of the parameters that vary.
@@ -21,7 +20,7 @@ pub trait SystemPoints: Debug + Send + Sync {
     ///
     /// # Errors
     /// [`crate::Error::Parameter`] for values outside their domain, and what keeps the start from being found.
-    fn at(&self, values: &[f64], start: usize, random: RandomStart) -> Result<SystemPoint>;
+    fn at(&self, values: &[f64], start: usize, random: Random) -> Result<SystemPoint>;
 }
 
 /// A system at a point of a grid, in the units in which it moves by about 1.
@@ -78,33 +77,5 @@ impl SectionPlace {
     /// Where a variable, of so many, has a value and falls.
     pub fn at(variable: usize, dimension: usize, value: f64) -> Self {
         SectionPlace::Untimed(across(variable, dimension, value))
-    }
-}
-
-/// A stream of random numbers that follows from a seed and the number of a point alone: the generator counts, and each point has
-/// a stream of its own.
-#[derive(Debug)]
-pub struct RandomStart(ChaCha8Rng);
-
-impl RandomStart {
-    /// The stream of this point.
-    pub fn new(seed: u64, number: usize) -> Self {
-        let mut generator = ChaCha8Rng::seed_from_u64(seed);
-        generator.set_stream(number as u64);
-        RandomStart(generator)
-    }
-
-    /// The same stream behind so many numbers.
-    #[must_use]
-    pub fn after(mut self, numbers: usize) -> Self {
-        // a number is two words of the generator
-        self.0.set_word_pos(2 * numbers as u128);
-        self
-    }
-
-    /// The next number, equally likely anywhere between two.
-    pub fn between(&mut self, (low, high): (f64, f64)) -> f64 {
-        let part = (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
-        low + part * (high - low)
     }
 }

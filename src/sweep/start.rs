@@ -1,6 +1,6 @@
 //! Where the runs of a sweep start.
 
-use super::points::{RandomStart, SectionPlace, SystemPoint};
+use super::points::{SectionPlace, SystemPoint};
 use super::{Grid, SweepRow, SweepSettings};
 use crate::error::Result;
 use crate::field::Vector;
@@ -8,6 +8,7 @@ use crate::friction::{AnyLaw, Formulas, beside};
 use crate::integrate::{AnyField, MotionUnits};
 use crate::model::{Loading, two_interfaces};
 use crate::number::polynomial::Crossing;
+use crate::random::Random;
 use crate::section::{Regime, Surface, half_driving_stress, usual_patience};
 
 /// ln psi_2 - ln psi_1 of the start beside the symmetric steady state.
@@ -30,7 +31,7 @@ const PATIENCE: f64 = 0.1;
 pub(super) fn point(settings: &SweepSettings, number: usize) -> Result<SystemPoint> {
     let place @ [i, j] = settings.place(number);
     let kind = number % settings.starts;
-    let random = RandomStart::new(settings.seed, number);
+    let random = Random::new(settings.seed, number);
     match &settings.grid {
         Grid::Plane {
             law,
@@ -60,12 +61,7 @@ pub(super) fn point(settings: &SweepSettings, number: usize) -> Result<SystemPoi
 
 /// Two equal interfaces, with the start of this kind: the first beside the symmetric steady state.
 #[doc(hidden)]
-pub fn equal_interfaces(
-    law: AnyLaw,
-    loading: Loading,
-    kind: usize,
-    random: RandomStart,
-) -> SystemPoint {
+pub fn equal_interfaces(law: AnyLaw, loading: Loading, kind: usize, random: Random) -> SystemPoint {
     let stress = half_driving_stress(&law, loading.driving, 2);
     let w = law.steady_state(0.5 * loading.driving).ln();
     let start = match kind {
@@ -96,12 +92,7 @@ pub(super) fn missing(settings: &SweepSettings, number: usize, why: String) -> S
 /// The start of this kind, from the second on, of interfaces with their steady stress tau and their steady ln psi: swung and alike, far,
 /// or random, from the seed and the point's number alone.
 #[doc(hidden)]
-pub fn start_of_interfaces(
-    kind: usize,
-    mut random: RandomStart,
-    tau: f64,
-    steady: &[f64],
-) -> Vec<f64> {
+pub fn start_of_interfaces(kind: usize, mut random: Random, tau: f64, steady: &[f64]) -> Vec<f64> {
     let last = steady.len() - 1;
     let (stress, moved): (f64, Vec<f64>) = match kind {
         1 => (0.0, vec![SWUNG; steady.len()]),

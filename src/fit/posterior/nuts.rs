@@ -6,9 +6,8 @@
 //!
 //! Our own: `vendor-notes/sampler.md`.
 
+use crate::random::Random;
 use nalgebra::{DMatrix, DVector};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 
 /// How often, on average, a point of a trajectory is to be accepted.
 const ACCEPTED: f64 = 0.85;
@@ -99,7 +98,7 @@ impl StepSize {
 
 /// A sampler in coordinates in which the metric is the identity: x = centre + root q.
 pub(super) struct Sampler {
-    generator: ChaCha8Rng,
+    random: Random,
     centre: DVector<f64>,
     root: DMatrix<f64>,
     evaluations: usize,
@@ -107,27 +106,18 @@ pub(super) struct Sampler {
 
 impl Sampler {
     /// With a covariance like that of the density, by its lower triangular root.
-    pub fn new(seed: u64, chain: u64, centre: DVector<f64>, root: DMatrix<f64>) -> Self {
-        let mut generator = ChaCha8Rng::seed_from_u64(seed);
-        generator.set_stream(chain);
+    pub fn new(seed: u64, chain: usize, centre: DVector<f64>, root: DMatrix<f64>) -> Self {
         Sampler {
-            generator,
+            random: Random::new(seed, chain),
             centre,
             root,
             evaluations: 0,
         }
     }
 
-    fn uniform(&mut self) -> f64 {
-        (self.generator.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    /// Standard normal numbers, by Box and Muller.
+    /// Standard normal numbers.
     pub fn normal(&mut self, count: usize) -> DVector<f64> {
-        DVector::from_fn(count, |_, _| {
-            let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
-            radius * (std::f64::consts::TAU * self.uniform()).cos()
-        })
+        DVector::from_fn(count, |_, _| self.random.normal())
     }
 
     fn outward(&self, q: &DVector<f64>) -> DVector<f64> {
@@ -288,7 +278,7 @@ impl Sampler {
             is_astray: false,
         };
         for depth in 0..DEEPEST {
-            let is_forward = self.uniform() < 0.5;
+            let is_forward = self.random.uniform() < 0.5;
             let direction = if is_forward { step } else { -step };
             let end = if is_forward { &tree.last } else { &tree.first };
             let end = end.clone();
@@ -300,7 +290,7 @@ impl Sampler {
                 break;
             }
             // Biased towards the new half (Betancourt 2017, A.3.2).
-            if self.uniform().ln() < other.log_weight - tree.log_weight {
+            if self.random.uniform().ln() < other.log_weight - tree.log_weight {
                 tree.chosen = other.chosen.clone();
             }
             tree = join(tree, other, is_forward, None);
@@ -355,7 +345,7 @@ impl Sampler {
             near.goes_on = false;
             return near;
         }
-        let chance = self.uniform();
+        let chance = self.random.uniform();
         join(near, far, is_forward, Some(chance))
     }
 }

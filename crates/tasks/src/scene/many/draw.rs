@@ -2,7 +2,7 @@
 
 use crate::scene::options::{ModelOptions, SlabOptions};
 use twinslip::error::{Error, Result, did_you_mean};
-use twinslip::sweep::RandomStart;
+use twinslip::random::Random;
 
 /// What may be drawn.
 const NAMES: [&str; 7] = [
@@ -112,7 +112,7 @@ impl Draw {
     }
 
     /// Gives the options of an interface its next value, and tells it.
-    pub fn put(&self, random: &mut RandomStart, slab: &mut SlabOptions, own: &mut InUnits) -> f64 {
+    pub fn put(&self, random: &mut Random, slab: &mut SlabOptions, own: &mut InUnits) -> f64 {
         let value = if self.by_logarithm {
             let value = random.between((self.from.ln(), self.to.ln())).exp();
             value.clamp(self.from, self.to)

@@ -11,7 +11,7 @@ use twinslip::error::{Error, Result};
 use twinslip::friction::{AnyLaw, Formulas, Parameters, beside, positive};
 use twinslip::many::{ManyInterfaces, OneOfMany, Processes, Share};
 use twinslip::model::Loading;
-use twinslip::sweep::RandomStart;
+use twinslip::random::Random;
 
 /// What is asked for.
 pub(super) struct Asked<'a> {
@@ -146,8 +146,8 @@ fn interfaces(
         return Ok(vec![one(slab, InUnits::default())?]);
     }
     // A stream for each constant: what one draws does not depend on the others.
-    let mut streams: Vec<RandomStart> = (1..=draws.len())
-        .map(|stream| RandomStart::new(seed, stream).after(range.start))
+    let mut streams: Vec<Random> = (1..=draws.len())
+        .map(|stream| Random::new(seed, stream).after(range.start))
         .collect();
     let mut next = |_| {
         let (mut own, mut units) = (slab.clone(), InUnits::default());
@@ -205,7 +205,7 @@ fn start(
             ["", by, seed] => (number(by)?, seed.parse().map_err(|_| unreadable())?),
             _ => return Err(unreadable()),
         };
-        let mut random = RandomStart::new(seed, 0).after(held.start);
+        let mut random = Random::new(seed, 0).after(held.start);
         return Ok(near(&mut |_| by * random.between((-1.0, 1.0))));
     }
     let numbers = text.split(',').map(number).collect::<Result<Vec<f64>>>()?;

@@ -5,7 +5,8 @@ use super::options::SweepOptions;
 use crate::scene::units::{Quantity, Units};
 use twinslip::error::{Error, Result, option_name};
 use twinslip::friction::positive;
-use twinslip::sweep::{RandomStart, Range, SystemPoint, SystemPoints};
+use twinslip::random::Random;
+use twinslip::sweep::{Range, SystemPoint, SystemPoints};
 
 /// Two states of a system with the values that they start from; the first varies fastest.
 #[derive(Debug, Clone, PartialEq)]
@@ -126,7 +127,7 @@ impl<P: SystemPoints> SystemPoints for BasinPoints<P> {
         self.system.parameters(&[])
     }
 
-    fn at(&self, values: &[f64], start: usize, random: RandomStart) -> Result<SystemPoint> {
+    fn at(&self, values: &[f64], start: usize, random: Random) -> Result<SystemPoint> {
         let mut point = self.system.at(&[], start, random)?;
         let states = &self.states;
         for (i, &value) in values.iter().enumerate() {

@@ -11,9 +11,10 @@ use twinslip::friction::{Formulas, Law, beside};
 use twinslip::integrate::{AnyField, MotionUnits};
 use twinslip::model::{self, AlikeInterfaces};
 use twinslip::number::polynomial::Crossing;
+use twinslip::random::Random;
 use twinslip::section::{Surface, usual_patience};
 use twinslip::sweep::{
-    RandomStart, SectionPlace, SystemPoint, SystemPoints, equal_interfaces, start_of_interfaces,
+    SectionPlace, SystemPoint, SystemPoints, equal_interfaces, start_of_interfaces,
 };
 
 /// Part of the usual patience: some 20 periods of stick-slip.
@@ -109,7 +110,7 @@ impl SystemPoints for InterfacePoints {
         self.told(values)
     }
 
-    fn at(&self, values: &[f64], start: usize, random: RandomStart) -> Result<SystemPoint> {
+    fn at(&self, values: &[f64], start: usize, random: Random) -> Result<SystemPoint> {
         let system = self.system(values)?;
         let loading = system.loading()?;
         let field = match (system.interfaces, system.unequal(loading)) {

@@ -13,10 +13,9 @@ use twinslip::field::Vector;
 use twinslip::friction::positive;
 use twinslip::integrate::{AnyField, MotionUnits};
 use twinslip::number::polynomial::Crossing;
+use twinslip::random::Random;
 use twinslip::section::{Surface, usual_patience};
-use twinslip::sweep::{
-    Enclosure, RandomStart, SectionPlace, SystemPoint, SystemPoints, start_of_interfaces,
-};
+use twinslip::sweep::{Enclosure, SectionPlace, SystemPoint, SystemPoints, start_of_interfaces};
 
 /// A system from a file of which some parameters vary.
 #[derive(Debug)]
@@ -176,7 +175,7 @@ impl SystemPoints for TextPoints {
         loading.chain(others.map(|(_, value)| *value)).collect()
     }
 
-    fn at(&self, values: &[f64], start: usize, mut random: RandomStart) -> Result<SystemPoint> {
+    fn at(&self, values: &[f64], start: usize, mut random: Random) -> Result<SystemPoint> {
         let mut system = self.model.system.clone();
         for (name, &value) in self.names.iter().zip(values) {
             let quantity = match self.model.slab {

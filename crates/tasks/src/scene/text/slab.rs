@@ -17,7 +17,7 @@ use twinslip::integrate::AnyField;
 use twinslip::model::TextSystem;
 use twinslip::number::{Interval, Jet, Real, Uncertain};
 use twinslip::orbit::{AlongArcs, ShootingNodes, WithinCluster, within_clusters};
-use twinslip::sweep::RandomStart;
+use twinslip::random::Random;
 
 /// Interfaces under one stress, with the law of a file: each on its own, or in clusters that move alike.
 #[derive(Debug, Clone, PartialEq)]
@@ -416,7 +416,7 @@ impl TextSlab {
     /// The same, and each psi times exp(EPS z), z drawn between -1 and 1.
     fn spread(&self, by: f64, seed: u64, system: &TextSystem, shape: &str) -> Result<Vec<f64>> {
         let mut start = self.steady(SPREAD, system, shape)?;
-        let mut random = RandomStart::new(seed, 0);
+        let mut random = Random::new(seed, 0);
         for log_state in &mut start[1..=self.counts.len()] {
             *log_state += by * random.between((-1.0, 1.0));
         }
