@@ -396,6 +396,20 @@ fn what_the_data_do_not_determine_is_told() {
 }
 
 #[test]
+fn what_depends_on_the_undetermined_has_no_error() {
+    let synthetic = Synthetic::new(&making("slip"), &mut Chance::new(3));
+    let problem = synthetic.problem(&ALL);
+    let truth = ALL.map(|name| synthetic.value(name)).to_vec();
+    let mut found = fit(&problem, &[truth], Intervals::Linear).expect("a fit");
+    let known = found.standard_errors()[4];
+    found.parameters[0].uncertainty = f64::INFINITY;
+    // Not 0, as a product of 0 and infinity would be read.
+    assert_eq!(found.propagated(&[1.0, 0.0, 0.0, 0.0, 1.0]), f64::INFINITY);
+    let error = found.propagated(&[0.0, 0.0, 0.0, 0.0, 2.0]);
+    assert!((error - 2.0 * known).abs() <= 1e-12 * known, "{error}");
+}
+
+#[test]
 fn outliers_count_less_where_that_is_asked() {
     let mut chance = Chance::new(8);
     let mut synthetic = Synthetic::new(&making("slip"), &mut chance);

@@ -7,6 +7,7 @@ use twinslip::fit::{
     DRIFT, Fit, Guess, Intervals, Loss, Prior, Problem, Record, Sampling, Scale, fit, guesses,
     healing_rate, holds, posterior,
 };
+use twinslip::number::Uncertain;
 
 const ALL: [&str; 5] = [
     "direct_effect",
@@ -348,8 +349,9 @@ fn holds_of_one(memory: f64, (count, coverage, bias): Effort) {
         assert_eq!(shown.len(), 3);
         let pairs = shown.iter().zip(&exact);
         let each = pairs.flat_map(|(own, exact)| {
-            let measured = own.measured.expect("it is measured");
-            let one = |own: twinslip::fit::Estimate, exact: twinslip::fit::Estimate| {
+            let measured = own.measured;
+            let one = |own: Option<Uncertain>, exact: Option<Uncertain>| {
+                let (own, exact) = (own.expect("it is shown"), exact.expect("it is known"));
                 let off = (own.value - exact.value) / own.uncertainty;
                 (off.abs() <= 1.96, off)
             };
@@ -383,7 +385,7 @@ fn what_holds_show_is_within_its_errors_in_93_to_97_of_100() {
 
 #[test]
 fn healing_grows_by_a_straight_line() {
-    let estimate = |value: f64, uncertainty: f64| twinslip::fit::Estimate { value, uncertainty };
+    let estimate = |value: f64, uncertainty: f64| Uncertain { value, uncertainty };
     let line = [10.0_f64, 100.0, 1000.0].map(|t| (t, estimate(0.01 + 0.008 * t.log10(), 1e-4)));
     let rate = healing_rate(line).expect("three holds");
     assert!((rate.value - 0.008).abs() < 1e-15);

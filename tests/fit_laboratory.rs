@@ -122,6 +122,31 @@ fn a_fit_and_a_run_say_the_same_of_holds() {
     );
 }
 
+/// Friction still rises as the record ends: there is no peak yet, in a run and in a fit.
+#[test]
+fn a_hold_that_no_peak_follows_has_none() {
+    let slid = Slid {
+        until: 422.0,
+        ..holds(2e-4, 1500.0)
+    };
+    let path = file("no-peak", &slid, 4220, 11);
+    let fitted = object(&format!("fit {path} --intervals linear"));
+    let run = object(
+        "integrate --law ageing --interfaces 1 --stiffness 5 --driving 1 --program 0:0,10:1 --until 10.2 --final-only",
+    );
+    let of_fit = &fitted["result"]["holds"][2];
+    for hold in [of_fit, &of_fit["fitted"]] {
+        assert!(
+            hold["peak"].is_null() && hold["healing"].is_null(),
+            "{of_fit}"
+        );
+        assert!(number(&hold["minimum"]["uncertainty"]) > 0.0, "{of_fit}");
+    }
+    let stress = &run["result"]["holds"][0]["stress"];
+    assert!(stress["peak"].is_null() && stress["healing"].is_null());
+    assert!(number(&stress["minimum"]) < number(&stress["before"]));
+}
+
 #[test]
 fn records_share_parameters_and_those_that_differ_are_named() {
     let one = file("share-1", &steps(2e-4, 2000.0), 1600, 2);

@@ -3,33 +3,25 @@
 use super::Fit;
 use super::noise::Autoregression;
 use super::problem::Problem;
-use super::response::Response;
+use super::response::TOLERANCE;
 use super::slider::{Motion, Stretch};
 use crate::error::Result;
+use crate::number::Uncertain;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
 /// A load point that is slower than this part of its velocity before is held.
-pub(super) const HELD: f64 = 1e-2;
-
-/// A number and its standard error.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Estimate {
-    /// The number.
-    pub value: f64,
-    /// Its standard error.
-    pub uncertainty: f64,
-}
+pub const HELD: f64 = 1e-2;
 
 /// Friction in a hold and after it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Levels<T> {
+pub struct Levels {
     /// At the end of the hold, where it is least.
-    pub minimum: T,
-    /// The largest one as sliding goes on.
-    pub peak: T,
+    pub minimum: Option<Uncertain>,
+    /// The largest one as sliding goes on; none where it still rises at the end.
+    pub peak: Option<Uncertain>,
     /// The peak less the friction before the hold.
-    pub healing: T,
+    pub healing: Option<Uncertain>,
 }
 
 /// A hold that a record shows.
@@ -41,10 +33,10 @@ pub struct Hold {
     pub start: f64,
     /// How long it lasts, in s.
     pub duration: f64,
-    /// As it was measured; none where samples are missing before it, at its end or after it.
-    pub measured: Option<Levels<Estimate>>,
-    /// As the fit has it.
-    pub fitted: Levels<Estimate>,
+    /// As it was measured, with standard errors; none where samples are missing.
+    pub measured: Levels,
+    /// As the fit has it, with the standard errors of its parameters.
+    pub fitted: Levels,
 }
 
 /// The holds of a motion: when they begin and end, and when sliding after them does, in s.
@@ -82,7 +74,6 @@ pub fn holds_of(motion: &Motion) -> Vec<(f64, f64, f64)> {
 /// Those of the friction.
 pub fn holds<const N: usize>(problem: &Problem<'_, N>, fit: &Fit) -> Result<Vec<Hold>> {
     let mut found = Vec::new();
-    let covariance = covariance(fit);
     for (record, rows) in problem.rows().into_iter().enumerate() {
         let one = &problem.records[record];
         let spans = holds_of(one.motion);
@@ -100,7 +91,6 @@ pub fn holds<const N: usize>(problem: &Problem<'_, N>, fit: &Fit) -> Result<Vec<
             let model = Model {
                 problem,
                 fit,
-                covariance: &covariance,
                 record,
             };
             let (fitted, at) = model.levels(start, end, after)?;
@@ -108,7 +98,7 @@ pub fn holds<const N: usize>(problem: &Problem<'_, N>, fit: &Fit) -> Result<Vec<
                 record,
                 start,
                 duration: end - start,
-                measured: shown.levels(&model, (start, end, after), &at)?,
+                measured: shown.levels(&model, (start, end, after), &at),
                 fitted,
             });
         }
@@ -116,51 +106,31 @@ pub fn holds<const N: usize>(problem: &Problem<'_, N>, fit: &Fit) -> Result<Vec<
     Ok(found)
 }
 
-/// Of the variables.
-fn covariance(fit: &Fit) -> DMatrix<f64> {
-    let errors = fit.standard_errors();
-    DMatrix::from_fn(errors.len(), errors.len(), |i, j| {
-        fit.correlation[(i, j)] * errors[i] * errors[j]
-    })
-}
-
-/// The friction of the fit at the end of the hold, at the peak and before the hold, and when the peak is.
+/// The friction of the fit before the hold, at its end and at the peak, and when that is.
 struct At {
-    peak: f64,
-    friction: [f64; 3],
+    before: f64,
+    minimum: f64,
+    peak: Option<(f64, f64)>,
 }
 
 struct Model<'a, const N: usize> {
     problem: &'a Problem<'a, N>,
     fit: &'a Fit,
-    covariance: &'a DMatrix<f64>,
     record: usize,
 }
 
 impl<const N: usize> Model<'_, N> {
     /// The friction at ascending times and its derivatives in the variables.
     fn response(&self, times: &[f64]) -> Result<(Vec<f64>, DMatrix<f64>)> {
-        let (problem, record) = (self.problem, self.record);
-        let one = &problem.records[record];
-        let (places, columns) = problem.places(record);
-        let (parameters, drift) = problem.parameters_at(record, &self.fit.variables);
-        let given = (&parameters[..], &places[..]);
-        let response = Response::of(problem.sliders, one.motion, times, given)?;
-        let mut slopes = DMatrix::zeros(times.len(), problem.free.len());
-        for (j, &column) in columns.iter().enumerate() {
-            let by = problem.free[column].scale.slope(parameters[places[j]]);
-            slopes.set_column(column, &(response.derivatives.column(j) * by));
-        }
-        let moved = one.motion.displacement(times);
-        if let Some(column) = problem.drift_column(record) {
-            slopes.column_mut(column).copy_from_slice(&moved);
-        }
-        let with_drift = response.friction.iter().zip(&moved);
-        Ok((with_drift.map(|(mu, x)| mu + drift * x).collect(), slopes))
+        let moved = self.problem.records[self.record].motion.displacement(times);
+        let at = (times, &moved[..]);
+        let variables = &self.fit.variables;
+        self.problem
+            .response_of(self.record, at, variables, TOLERANCE)
     }
 
-    /// When friction is largest between two times.
-    fn peak(&self, from: f64, to: f64) -> Result<f64> {
+    /// When friction is largest between two times; none where it rises to the end.
+    fn peak(&self, from: f64, to: f64) -> Result<Option<f64>> {
         /// Times that are looked at, twice; at first ever more sparsely.
         const LOOKED_AT: usize = 200;
         let look = |times: &[f64]| -> Result<usize> {
@@ -181,26 +151,31 @@ impl<const N: usize> Model<'_, N> {
         let dense: Vec<f64> = (0..LOOKED_AT)
             .map(|i| low + (high - low) * part(i))
             .collect();
-        Ok(dense[look(&dense)?])
+        let at = dense[look(&dense)?];
+        Ok((at < to).then_some(at))
     }
 
     /// What the fit has, with errors of its parameters. At the peak friction does not change with time, so that its derivatives are those at
     /// a fixed time.
-    fn levels(&self, start: f64, end: f64, after: f64) -> Result<(Levels<Estimate>, At)> {
+    fn levels(&self, start: f64, end: f64, after: f64) -> Result<(Levels, At)> {
         let peak = self.peak(end, after)?;
-        let (friction, slopes) = self.response(&[start, end, peak])?;
-        let estimate = |value: f64, slope: &DVector<f64>| Estimate {
-            value,
-            uncertainty: (self.covariance * slope).dot(slope).max(0.0).sqrt(),
+        let times: Vec<f64> = [start, end].into_iter().chain(peak).collect();
+        let (friction, slopes) = self.response(&times)?;
+        let row = |i: usize| slopes.row(i).transpose();
+        let known = |value: f64, slopes: &DVector<f64>| {
+            Uncertain::new(value, self.fit.propagated(slopes.as_slice()))
         };
-        let [before, least, most] = [0, 1, 2].map(|i| slopes.row(i).transpose());
         let levels = Levels {
-            minimum: estimate(friction[1], &least),
-            peak: estimate(friction[2], &most),
-            healing: estimate(friction[2] - friction[0], &(most - before)),
+            minimum: Some(known(friction[1], &row(1))),
+            peak: peak.map(|_| known(friction[2], &row(2))),
+            healing: peak.map(|_| known(friction[2] - friction[0], &(row(2) - row(0)))),
         };
-        let friction = [friction[0], friction[1], friction[2]];
-        Ok((levels, At { peak, friction }))
+        let at = At {
+            before: friction[0],
+            minimum: friction[1],
+            peak: peak.map(|peak| (peak, friction[2])),
+        };
+        Ok((levels, at))
     }
 }
 
@@ -218,32 +193,29 @@ impl Shown<'_> {
         model: &Model<'_, N>,
         (start, end, after): (f64, f64, f64),
         at: &At,
-    ) -> Result<Option<Levels<Estimate>>> {
+    ) -> Levels {
         let rows = |from: f64, to: f64| {
             let first = self.times.partition_point(|&t| t < from);
             first..self.times.partition_point(|&t| t <= to)
         };
         let fitted = &model.fit.fitted[model.problem.rows()[model.record].clone()];
-        let flat = |rows: Range<usize>, near: f64, level: f64| self.flat(fitted, rows, near, level);
-        let begun = self.times[0];
-        let [before, least, most] = at.friction;
-        let windows = (
-            flat(rows(begun, start), start, before),
-            flat(rows(start, end), end, least),
-            flat(rows(end, after), at.peak, most),
-        );
-        let (Some(before_rows), Some(least_rows), Some(most_rows)) = windows else {
-            return Ok(None);
+        let flat = |span: (f64, f64), near: f64, level: f64| {
+            self.flat(fitted, rows(span.0, span.1), near, level)
         };
-        let minimum = self.estimate(least, &[(&least_rows, 1.0)]);
-        let peak = self.estimate(most, &[(&most_rows, 1.0)]);
-        let both = [(&most_rows, 1.0), (&before_rows, -1.0)];
-        let healing = self.estimate(most - before, &both);
-        Ok(Some(Levels {
-            minimum,
-            peak,
-            healing,
-        }))
+        let before = flat((self.times[0], start), start, at.before);
+        let least = flat((start, end), end, at.minimum);
+        let most = at
+            .peak
+            .and_then(|(time, level)| Some((flat((end, after), time, level)?, level)));
+        Levels {
+            minimum: least.map(|rows| self.mean(at.minimum, &[(&rows, 1.0)])),
+            peak: most
+                .as_ref()
+                .map(|(rows, level)| self.mean(*level, &[(rows, 1.0)])),
+            healing: most.zip(before).map(|((most, level), before)| {
+                self.mean(level - at.before, &[(&most, 1.0), (&before, -1.0)])
+            }),
+        }
     }
 
     /// The rows around a time at which the fit is within the noise of a level; none where there is no sample among them.
@@ -275,7 +247,7 @@ impl Shown<'_> {
     }
 
     /// A value of the fit with the mean residuals of some rows, and the standard error of these.
-    fn estimate(&self, fitted: f64, windows: &[(&Range<usize>, f64)]) -> Estimate {
+    fn mean(&self, fitted: f64, windows: &[(&Range<usize>, f64)]) -> Uncertain {
         let mut weights = DMatrix::zeros(self.residuals.len(), 1);
         for (rows, sign) in windows {
             let by = sign / rows.len() as f64;
@@ -285,22 +257,20 @@ impl Shown<'_> {
         let pairs = self.residuals.iter().zip(weights.iter());
         let off: f64 = pairs.map(|(residual, weight)| residual * weight).sum();
         let variance = self.noise.covariance_of(&weights)[(0, 0)];
-        Estimate {
-            value: fitted + off,
-            uncertainty: variance.max(0.0).sqrt(),
-        }
+        Uncertain::new(fitted + off, variance.sqrt())
     }
 }
 
 /// How healing grows per decade of the hold's duration: the slope of a straight line against its logarithm to base 10, by weights of inverse
 /// variances, or of equal weights where nothing has an error; its error counts how far the holds are from a line. None where there are no two
 /// durations.
-pub fn healing_rate(holds: impl IntoIterator<Item = (f64, Estimate)>) -> Option<Estimate> {
+pub fn healing_rate(holds: impl IntoIterator<Item = (f64, Uncertain)>) -> Option<Uncertain> {
     /// Durations that are the same but for rounding, in decades.
     const SAME: f64 = 1e-6;
-    let all: Vec<(f64, Estimate)> = holds.into_iter().collect();
+    let known = |(_, one): &(f64, Uncertain)| one.uncertainty.is_finite();
+    let all: Vec<(f64, Uncertain)> = holds.into_iter().filter(known).collect();
     let is_exact = all.iter().all(|(_, one)| one.uncertainty == 0.0);
-    let weighted = |(duration, one): &(f64, Estimate)| {
+    let weighted = |(duration, one): &(f64, Uncertain)| {
         let weight = if is_exact {
             1.0
         } else {
@@ -312,7 +282,7 @@ pub fn healing_rate(holds: impl IntoIterator<Item = (f64, Estimate)>) -> Option<
     let apart = points
         .iter()
         .any(|(own, _, _)| (own - points[0].0).abs() >= SAME);
-    if !apart || points.iter().any(|(_, _, w)| !w.is_finite() || *w == 0.0) {
+    if !apart || points.iter().any(|(_, _, w)| !w.is_finite()) {
         return None;
     }
     let sum = |of: &dyn Fn(&(f64, f64, f64)) -> f64| points.iter().map(of).sum::<f64>();
@@ -326,8 +296,5 @@ pub fn healing_rate(holds: impl IntoIterator<Item = (f64, Estimate)>) -> Option<
     let off = sum(&|(own, value, w)| w * (value - y - slope * (own - x)).powi(2));
     let scatter = off / (points.len() - 2).max(1) as f64;
     let scatter = if is_exact { scatter } else { scatter.max(1.0) };
-    Some(Estimate {
-        value: slope,
-        uncertainty: (scatter / spread).sqrt(),
-    })
+    Some(Uncertain::new(slope, (scatter / spread).sqrt()))
 }

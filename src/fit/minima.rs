@@ -1,8 +1,7 @@
 //! Whether the sum of squares has several minima that the data do not tell apart.
 
 use super::problem::Problem;
-use super::record::Record;
-use super::{FIRST_ITERATIONS, Fit, MAX_ITERATIONS, NEGLIGIBLE, THIN};
+use super::{FIRST_ITERATIONS, Fit, MAX_ITERATIONS, NEGLIGIBLE, ranked, thinned};
 use crate::error::Result;
 
 /// Starts that are followed.
@@ -32,17 +31,11 @@ pub fn minima<const N: usize>(
                 .all(|((one, other), error)| (one - other).abs() <= APART * error)
         })
     };
-    let records = problem.records.iter();
-    let thinned = records.map(|one| one.record.thinned_along(one.motion, THIN));
-    let thinned: Vec<Record> = thinned.collect();
-    let thin = problem.with(&thinned);
+    let records = thinned(problem);
+    let thin = problem.with(&records);
     let bounds = problem.bounds();
-    let variables = starts.iter().map(|values| thin.variables(values));
-    let mut ranked: Vec<(f64, Vec<f64>)> = variables.map(|x| (thin.cost(&x), x)).collect();
-    ranked.retain(|(cost, _)| cost.is_finite());
-    ranked.sort_by(|one, other| one.0.total_cmp(&other.0));
     let least = problem.cost(&fit.variables);
-    for (_, start) in ranked.iter().take(FOLLOWED) {
+    for (_, start) in ranked(&thin, starts).iter().take(FOLLOWED) {
         let effort = (FIRST_ITERATIONS, NEGLIGIBLE);
         let Ok(near) = thin.minimum(start, &bounds, effort) else {
             continue;

@@ -24,7 +24,7 @@ mod verdict;
 
 pub use compare::{Comparison, akaike, cross_validation};
 pub use free::{DRIFT, FreeParameter, Scale};
-pub use holds::{Estimate, Hold, Levels, healing_rate, holds, holds_of};
+pub use holds::{HELD, Hold, Levels, healing_rate, holds, holds_of};
 pub use least_squares::{Evaluate, Minimum, Residuals, minimise};
 pub use loss::Loss;
 pub use minima::minima;
@@ -43,7 +43,7 @@ pub use verdict::{Verdict, undecided};
 
 use crate::error::{Error, Result};
 use crate::number::singular_values;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::ops::Range;
 
@@ -121,6 +121,18 @@ pub struct Fit {
 }
 
 impl Fit {
+    /// The standard error of a quantity with these derivatives in the variables; infinite where it depends on what the data do not determine.
+    pub fn propagated(&self, slopes: &[f64]) -> f64 {
+        let pairs = slopes.iter().zip(self.standard_errors());
+        let each = pairs.map(|(slope, error)| if *slope == 0.0 { 0.0 } else { slope * error });
+        let each = DVector::from_iterator(slopes.len(), each);
+        let variance = each.dot(&(&self.correlation * &each));
+        match variance.is_finite() {
+            true => variance.max(0.0).sqrt(),
+            false => f64::INFINITY,
+        }
+    }
+
     /// The standard errors of the variables.
     pub fn standard_errors(&self) -> Vec<f64> {
         let each = self.parameters.iter();
@@ -218,19 +230,31 @@ fn linear_interval(scale: Scale, x: f64, side: f64) -> (f64, f64) {
     (x - side, x + side)
 }
 
+/// The records, as far as starts are compared by them.
+fn thinned<const N: usize>(problem: &Problem<'_, N>) -> Vec<Record> {
+    let records = problem.records.iter();
+    let thinned = records.map(|one| one.record.thinned_along(one.motion, THIN));
+    thinned.collect()
+}
+
+/// Starts at which there is a friction, as variables with their sums of squares, the least first.
+fn ranked<const N: usize>(problem: &Problem<'_, N>, starts: &[Vec<f64>]) -> Vec<(f64, Vec<f64>)> {
+    let variables = starts.iter().map(|values| problem.variables(values));
+    let mut ranked: Vec<(f64, Vec<f64>)> = variables.map(|x| (problem.cost(&x), x)).collect();
+    ranked.retain(|(cost, _)| cost.is_finite());
+    ranked.sort_by(|one, other| one.0.total_cmp(&other.0));
+    ranked
+}
+
 /// The start from which the least sum of squares is reached on a thinned record: the starts with the least sums of squares are followed.
 fn best_start<const N: usize>(
     problem: &Problem<'_, N>,
     starts: &[Vec<f64>],
     bounds: &[(f64, f64)],
 ) -> Result<(Vec<f64>, usize)> {
-    let records = problem.records.iter();
-    let thinned = records.map(|one| one.record.thinned_along(one.motion, THIN));
-    let thinned: Vec<Record> = thinned.collect();
-    let thin = problem.with(&thinned);
-    let variables = starts.iter().map(|values| thin.variables(values));
-    let mut ranked: Vec<(f64, Vec<f64>)> = variables.map(|x| (thin.cost(&x), x)).collect();
-    ranked.retain(|(cost, _)| cost.is_finite());
+    let records = thinned(problem);
+    let thin = problem.with(&records);
+    let ranked = ranked(&thin, starts);
     if ranked.is_empty() {
         // What is in the way of the first says most.
         for start in starts {
@@ -241,7 +265,6 @@ fn best_start<const N: usize>(
         }
     }
     let mut evaluations = starts.len();
-    ranked.sort_by(|one, other| one.0.total_cmp(&other.0));
     let mut best: Option<(f64, Vec<f64>)> = None;
     for (_, start) in ranked.iter().take(FOLLOWED) {
         // Where a friction has no derivatives another start may have.

@@ -4,7 +4,7 @@ use super::free::{DRIFT, FreeParameter};
 use super::least_squares::{Minimum, Residuals, minimise};
 use super::loss::Loss;
 use super::record::Record;
-use super::response::{Response, steady_friction};
+use super::response::{Response, TOLERANCE, steady_friction};
 use super::slider::{Motion, Sliders};
 use crate::error::{Error, Result};
 use nalgebra::{DMatrix, DVector};
@@ -155,6 +155,35 @@ impl<const N: usize> Problem<'_, N> {
         each.flat_map(|one| one.record.weights.iter().copied())
     }
 
+    /// The friction of a record at some times, when the load point has moved so far, and its derivatives in the variables; steps may err by the
+    /// tolerance.
+    ///
+    /// # Errors
+    /// Those of [`Response::of`].
+    pub(super) fn response_of(
+        &self,
+        record: usize,
+        (times, moved): (&[f64], &[f64]),
+        variables: &[f64],
+        tolerance: f64,
+    ) -> Result<(Vec<f64>, DMatrix<f64>)> {
+        let (places, columns) = self.places(record);
+        let (parameters, drift) = self.parameters_at(record, variables);
+        let of = (self.sliders, self.records[record].motion);
+        let response = Response::to(tolerance, of, times, (&parameters, &places))?;
+        let with_drift = response.friction.iter().zip(moved);
+        let friction = with_drift.map(|(mu, x)| mu + drift * x).collect();
+        let mut slopes = DMatrix::zeros(times.len(), self.free.len());
+        for (j, &column) in columns.iter().enumerate() {
+            let by = self.free[column].scale.slope(parameters[places[j]]);
+            slopes.set_column(column, &(response.derivatives.column(j) * by));
+        }
+        if let Some(column) = self.drift_column(record) {
+            slopes.column_mut(column).copy_from_slice(moved);
+        }
+        Ok((friction, slopes))
+    }
+
     /// The friction at these variables, of all records one after the other, and its derivatives in them.
     ///
     /// # Errors
@@ -163,27 +192,15 @@ impl<const N: usize> Problem<'_, N> {
         let mut slopes = DMatrix::zeros(self.samples(), self.free.len());
         let mut friction = Vec::with_capacity(self.samples());
         for (i, rows) in self.rows().into_iter().enumerate() {
-            let one = &self.records[i];
-            let (places, columns) = self.places(i);
-            let (parameters, drift) = self.parameters_at(i, variables);
-            let times = &one.record.times;
-            let response = Response::of(self.sliders, one.motion, times, (&parameters, &places))?;
-            let moved = &one.record.displacement;
-            friction.extend(
-                response
-                    .friction
-                    .iter()
-                    .zip(moved)
-                    .map(|(mu, x)| mu + drift * x),
-            );
-            let mut own = slopes.rows_mut(rows.start, rows.len());
-            for (j, &column) in columns.iter().enumerate() {
-                let by = self.free[column].scale.slope(parameters[places[j]]);
-                own.set_column(column, &(response.derivatives.column(j) * by));
-            }
-            if let Some(column) = self.drift_column(i) {
-                own.column_mut(column).copy_from_slice(moved);
-            }
+            let Record {
+                times,
+                displacement,
+                ..
+            } = self.records[i].record;
+            let (own, of_own) = self.response_of(i, (times, displacement), variables, TOLERANCE)?;
+            friction.extend(own);
+            let mut rows = slopes.rows_mut(rows.start, rows.len());
+            rows.copy_from(&of_own);
         }
         if friction.iter().chain(&slopes).all(|x| x.is_finite()) {
             Ok((friction, slopes))

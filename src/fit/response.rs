@@ -8,7 +8,7 @@ use crate::series::{Accuracy, Expansion, Tangent};
 use nalgebra::{Const, DMatrix, Dyn, OMatrix, SMatrix};
 
 /// What a step may err by, relative and absolute, in the friction coefficient and in ln psi.
-const TOLERANCE: f64 = 2e-9;
+pub(super) const TOLERANCE: f64 = 2e-9;
 /// A slider that takes more steps, and as many more for each stretch, is unstable, as nothing is that was measured at steady sliding.
 const MAX_STEPS: usize = 20_000;
 const STEPS_EACH: usize = 20;

@@ -87,6 +87,13 @@ impl Call {
         }
     }
 
+    /// What was found is in memory alone: an interruption waits for the step that is being computed.
+    pub fn holds(&self) {
+        if self.outlet.is_none() {
+            interrupt::holds();
+        }
+    }
+
     /// Whether the computation is to end.
     pub fn stops(&self) -> bool {
         match &self.outlet {

@@ -1,10 +1,11 @@
 //! Holds of a fit or of a run: as objects, and in lines.
 
 use serde_json::{Value, json};
-use twinslip::fit::{Estimate, Hold, Levels, healing_rate, holds_of};
+use twinslip::fit::{Hold, Levels, healing_rate, holds_of};
+use twinslip::number::Uncertain;
 use twinslip_output::seven_digits;
 use twinslip_tasks::scene::{FitPlan, HoldOfRun};
-use twinslip_tasks::views::{in_digits, measured_healing};
+use twinslip_tasks::views::measured_healing;
 
 /// Whether the load point is held in any record.
 pub fn are_there(plan: &FitPlan) -> bool {
@@ -15,20 +16,10 @@ pub fn are_there(plan: &FitPlan) -> bool {
 /// `result.holds`; `several` with the number of the record.
 pub fn object(holds: &[Hold], several: bool) -> Value {
     let each = holds.iter().map(|hold| {
-        let measured = |of: fn(&Levels<Estimate>) -> Estimate| hold.measured.as_ref().map(of);
-        let number = |one: Option<Estimate>| one.map(estimate);
-        let mut object = json!({
-            "start": hold.start,
-            "duration": hold.duration,
-            "minimum": number(measured(|one| one.minimum)),
-            "peak": number(measured(|one| one.peak)),
-            "healing": number(measured(|one| one.healing)),
-            "fitted": {
-                "minimum": estimate(hold.fitted.minimum),
-                "peak": estimate(hold.fitted.peak),
-                "healing": estimate(hold.fitted.healing),
-            },
-        });
+        let mut object = levels(&hold.measured);
+        object["start"] = json!(hold.start);
+        object["duration"] = json!(hold.duration);
+        object["fitted"] = levels(&hold.fitted);
         if several {
             object["record"] = json!(hold.record + 1);
         }
@@ -37,7 +28,15 @@ pub fn object(holds: &[Hold], several: bool) -> Value {
     each.collect()
 }
 
-fn estimate(one: Estimate) -> Value {
+fn levels(of: &Levels) -> Value {
+    json!({
+        "minimum": of.minimum.map(estimate),
+        "peak": of.peak.map(estimate),
+        "healing": of.healing.map(estimate),
+    })
+}
+
+fn estimate(one: Uncertain) -> Value {
     let uncertainty = Some(one.uncertainty).filter(|x| x.is_finite());
     json!({ "value": one.value, "uncertainty": uncertainty })
 }
@@ -46,7 +45,7 @@ fn estimate(one: Estimate) -> Value {
 pub fn rate(holds: &[Hold]) -> Value {
     let fitted = holds
         .iter()
-        .map(|hold| (hold.duration, hold.fitted.healing));
+        .filter_map(|hold| Some((hold.duration, hold.fitted.healing?)));
     let mut object =
         measured_healing(holds).map_or(json!({ "value": null, "uncertainty": null }), estimate);
     object["fitted"] = json!(healing_rate(fitted).map(|one| one.value));
@@ -112,10 +111,10 @@ pub fn rate_of_run(holds: &[HoldOfRun]) -> Value {
     json!(healing_of_run(holds).map(estimate))
 }
 
-fn healing_of_run(holds: &[HoldOfRun]) -> Option<Estimate> {
+fn healing_of_run(holds: &[HoldOfRun]) -> Option<Uncertain> {
     let healing = holds.iter().filter_map(|hold| {
         let value = (hold.peak? - hold.stress.0) * hold.friction?;
-        let exact = Estimate {
+        let exact = Uncertain {
             value,
             uncertainty: 0.0,
         };
@@ -126,19 +125,7 @@ fn healing_of_run(holds: &[HoldOfRun]) -> Option<Estimate> {
 
 /// In words, one a line.
 pub fn lines(holds: &[Hold], several: bool) -> Vec<String> {
-    let told = |one: Estimate| {
-        let digits = (one.value.abs() / one.uncertainty).log10().floor() + 2.0;
-        let digits = if digits.is_finite() {
-            digits.clamp(2.0, 15.0) as usize
-        } else {
-            5
-        };
-        format!(
-            "{} ± {}",
-            in_digits(one.value, digits),
-            in_digits(one.uncertainty, 2)
-        )
-    };
+    let told = |one: Option<Uncertain>| one.map_or("unknown".to_owned(), |one| one.to_string());
     let each = holds.iter().map(|hold| {
         let of = match several {
             true => format!(" in record {}", hold.record + 1),
@@ -146,21 +133,20 @@ pub fn lines(holds: &[Hold], several: bool) -> Vec<String> {
         };
         let seconds = seven_digits(hold.duration);
         let begun = format!("hold of {seconds} s at {} s{of}", seven_digits(hold.start));
-        match &hold.measured {
-            Some(levels) => format!(
-                "{begun}: minimum {}, peak {}, healing {} (fitted {})",
-                told(levels.minimum),
-                told(levels.peak),
-                told(levels.healing),
-                in_digits(hold.fitted.healing.value, 4)
-            ),
-            None => format!(
-                "{begun}: no samples before it, at its end and at the peak; fitted healing {}",
-                told(hold.fitted.healing)
-            ),
-        }
+        let Levels {
+            minimum,
+            peak,
+            healing,
+        } = hold.measured;
+        format!(
+            "{begun}: minimum {}, peak {}, healing {} (fitted {})",
+            told(minimum),
+            told(peak),
+            told(healing),
+            told(hold.fitted.healing)
+        )
     });
     let rate = measured_healing(holds);
-    each.chain(rate.map(|rate| format!("healing rate {} per decade", told(rate))))
+    each.chain(rate.map(|rate| format!("healing rate {} per decade", told(Some(rate)))))
         .collect()
 }

@@ -3,7 +3,6 @@
 use super::super::free::FreeParameter;
 use super::super::noise::Autoregression;
 use super::super::problem::Problem;
-use super::super::response::Response;
 use super::compressed::Compressed;
 use super::prior::{Prior, Unbounded};
 use crate::error::Result;
@@ -164,26 +163,20 @@ impl<'a, const N: usize> Density<'a, N> {
     fn near(&self, about: &About, x: &[f64], gradient: &mut DVector<f64>) -> Result<f64> {
         let mut log = 0.0;
         for (i, compressed) in about.records.iter().enumerate() {
-            let one = &self.problem.records[i];
-            let (places, columns) = self.problem.places(i);
-            let (parameters, drift) = self.problem.parameters_at(i, x);
-            let given = (&parameters[..], &places[..]);
             let times = &about.times[i];
-            let of = (self.problem.sliders, one.motion);
-            let response = Response::to(COARSE, of, times, given)?;
             let count = times.len();
+            // The straight line is apart.
+            let still = vec![0.0; count];
+            let (friction, slopes) = self.problem.response_of(i, (times, &still), x, COARSE)?;
+            let (_, drift) = self.problem.parameters_at(i, x);
             let differences = DVector::from_fn(count + 1, |k, _| match k < count {
-                true => response.friction[k] - about.friction[i][k],
+                true => friction[k] - about.friction[i][k],
                 false => drift - about.slopes[i],
             });
             let (squares, of_squares) = compressed.squares(&differences);
             let (own, by) = Self::likelihood(self.samples(i), squares);
             log += own;
-            let of_nodes = of_squares.rows(0, count);
-            for (j, &column) in columns.iter().enumerate() {
-                let slope = self.problem.free[column].scale.slope(parameters[places[j]]);
-                gradient[column] += by * slope * response.derivatives.column(j).dot(&of_nodes);
-            }
+            *gradient += slopes.tr_mul(&of_squares.rows(0, count)) * by;
             if let Some(column) = self.problem.drift_column(i) {
                 gradient[column] += by * of_squares[count];
             }

@@ -3,13 +3,14 @@
 //! Vehtari, A., Gelman, A., Simpson, D., Carpenter, B. and Bürkner, P.-C. (2021). Rank-normalization, folding, and localization: an improved R-hat
 //! for assessing convergence of MCMC. Bayesian Analysis 16, 667-718.
 
+use crate::number::quantile;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 /// R-hat of one quantity: the larger one of that of rank-normalised draws and that of folded ones, each chain split in two.
 pub(super) fn r_hat(chains: &[Vec<f64>]) -> f64 {
     let halves = split(chains);
     let all: Vec<f64> = halves.concat();
-    let middle = quantile(&mut all.clone(), 0.5);
+    let middle = quantile(&sorted(&all), 0.5);
     let folded: Vec<Vec<f64>> = halves
         .iter()
         .map(|one| one.iter().map(|x| (x - middle).abs()).collect())
@@ -21,9 +22,9 @@ pub(super) fn r_hat(chains: &[Vec<f64>]) -> f64 {
 /// smaller one of the two quantiles 5 and 95 %.
 pub(super) fn effective_sizes(chains: &[Vec<f64>]) -> (f64, f64) {
     let halves = split(chains);
-    let all: Vec<f64> = halves.concat();
+    let all = sorted(&halves.concat());
     let beyond = |part: f64| {
-        let limit = quantile(&mut all.clone(), part);
+        let limit = quantile(&all, part);
         let is_below = halves.iter().map(|one| {
             let each = one.iter().map(|&x| f64::from(u8::from(x <= limit)));
             each.collect::<Vec<f64>>()
@@ -36,13 +37,11 @@ pub(super) fn effective_sizes(chains: &[Vec<f64>]) -> (f64, f64) {
     )
 }
 
-/// The value below which a part of all values lies.
-pub(super) fn quantile(values: &mut [f64], part: f64) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let place = part * (values.len() - 1) as f64;
-    let (below, rest) = (place.floor() as usize, place.fract());
-    let above = (below + 1).min(values.len() - 1);
-    values[below] + rest * (values[above] - values[below])
+/// Ascending.
+fn sorted(values: &[f64]) -> Vec<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted
 }
 
 /// Each chain as two.

@@ -11,6 +11,7 @@ pub use prior::Prior;
 use super::problem::Problem;
 use super::{Fit, label};
 use crate::error::{Error, Result};
+use crate::number::quantile;
 use density::{About, Density};
 use nalgebra::{DMatrix, DVector};
 use nuts::{Chain, Sampler};
@@ -229,7 +230,7 @@ fn one_chain<const N: usize>(
     /// Places to begin at that are tried before the minimum itself.
     const PLACES: i32 = 10;
     let Laplace { centre, root, .. } = laplace;
-    let mut sampler = Sampler::new(sampling.seed, chain as u64, centre.clone(), root.clone());
+    let mut sampler = Sampler::new(sampling.seed, chain, centre.clone(), root.clone());
     let mut at = |z: &DVector<f64>, gradient: &mut DVector<f64>| density.at(about, z, gradient);
     // Chains begin farther apart than draws are, so that agreeing says something.
     let mut gradient = DVector::zeros(centre.len());
@@ -283,11 +284,12 @@ fn gather<const N: usize>(
         let mean = column.iter().sum::<f64>() / count;
         let squares: f64 = column.iter().map(|x| (x - mean).powi(2)).sum();
         let mut sorted = column;
+        sorted.sort_by(f64::total_cmp);
         Marginal {
             label: label(&free.name, free.of_record),
             mean,
             deviation: (squares / (count - 1.0)).sqrt(),
-            quantiles: QUANTILES.map(|part| diagnostics::quantile(&mut sorted, part)),
+            quantiles: QUANTILES.map(|part| quantile(&sorted, part)),
             effective_sizes: diagnostics::effective_sizes(&by_chain),
             r_hat: diagnostics::r_hat(&by_chain),
         }

@@ -2,6 +2,7 @@
 
 use super::item::{Item, Measured, matched};
 use nalgebra::{DMatrix, DVector};
+use twinslip::number::quantile;
 
 /// Of a standard normal number: so far from 0 it is with 5 %.
 pub const DEVIATIONS: f64 = 1.959_963_984_540_054;
@@ -182,13 +183,7 @@ fn quantiles(numbers: &mut [f64]) -> Option<Ends> {
         return None;
     }
     numbers.sort_by(f64::total_cmp);
-    let at = |part: f64| {
-        let place = part * (numbers.len() - 1) as f64;
-        let (low, rest) = (place.floor() as usize, place.fract());
-        let high = (low + 1).min(numbers.len() - 1);
-        numbers[low] + rest * (numbers[high] - numbers[low])
-    };
-    Some([at(TAIL), at(1.0 - TAIL)])
+    Some([TAIL, 1.0 - TAIL].map(|part| quantile(numbers, part)))
 }
 
 /// Three standard errors of an end of the middle 95 % of so many normal numbers, in units of half of these.

@@ -14,7 +14,6 @@ use super::holds;
 use super::report::Report;
 use serde_json::{Map, Value, json};
 use std::path::Path;
-use std::sync::atomic::Ordering;
 use twinslip::error::{Error, Result};
 use twinslip::fit::{
     Comparison, Fit, Hold, Posterior, Problem, Sampling, akaike, cross_validation,
@@ -105,11 +104,13 @@ pub fn run(options: &FitOptions, call: &Call) -> Result<Ending> {
         progress.begin(&format!("fitting the law {}{number}", law.name));
         let mut fitted = fitted(&plan, law, options)?;
         if let Some(sampling) = plan.sampling.get(i).filter(|_| !stopped) {
+            // Watched before it is said: whoever reads that draws come may interrupt them.
+            call.watch();
+            call.holds();
             progress.begin(&format!(
                 "drawing from the posterior of {}{number}",
                 law.name
             ));
-            call.watch();
             let drawn = draw(&plan, &fitted, sampling, call);
             call.unwatch();
             // The fit is kept.
@@ -244,8 +245,7 @@ fn fitted<'a>(plan: &FitPlan, law: &'a LawToFit, options: &FitOptions) -> Result
 }
 
 fn draw(plan: &FitPlan, fitted: &Fitted<'_>, sampling: &Sampling, call: &Call) -> Result<Drawn> {
-    let stop = call.flag();
-    let goes_on = || !stop.load(Ordering::Relaxed);
+    let goes_on = || !call.stops();
     let given = (&fitted.together, sampling);
     let (posterior, minima) = plan.posterior(fitted.law, given, &goes_on)?;
     Ok(Drawn {

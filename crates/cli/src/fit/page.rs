@@ -48,7 +48,8 @@ pub fn law_picture(plan: &FitPlan, fitted: &Fitted<'_>) -> Result<Drawing> {
         lower: of(1),
         upper: of(2),
         colour: 0,
-        left_out: Vec::new(),
+        // Where friction depends on what the data do not determine there is no band.
+        left_out: band.iter().map(|three| !three[1].is_finite()).collect(),
     };
     let panel = Panel {
         series: vec![

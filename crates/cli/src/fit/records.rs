@@ -3,9 +3,10 @@
 use super::{Fitted, object};
 use serde_json::{Value, json};
 use twinslip::fit::{Agreement, Fit, FittedParameter};
+use twinslip::number::Uncertain;
 use twinslip_output::plot::{Axis, Bars, Drawing, Mark, Panel, PlotSeries, Stroke, Symbol};
 use twinslip_tasks::scene::FitPlan;
-use twinslip_tasks::views::{digits_of, in_digits, label_of};
+use twinslip_tasks::views::{in_digits, label_of};
 
 /// `result.records`
 pub fn objects(plan: &FitPlan, fitted: &Fitted<'_>) -> Value {
@@ -125,12 +126,8 @@ fn in_words(plan: &FitPlan, at: usize, fit: &Fit, one: &FittedParameter) -> Stri
     } else {
         format!(" {unit}")
     };
-    format!(
-        "{} = {} ± {}{unit}",
-        one.name,
-        in_digits(one.value * factor, digits_of(one)),
-        in_digits(one.uncertainty * factor, 2)
-    )
+    let known = Uncertain::new(one.value * factor, one.uncertainty * factor);
+    format!("{} = {known}{unit}", one.name)
 }
 
 /// A panel for each parameter that is shared: what each record says, from the top, and all together.

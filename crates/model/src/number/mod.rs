@@ -13,6 +13,7 @@ mod interval;
 mod jet;
 mod logarithm;
 pub mod polynomial;
+mod quantile;
 mod ratio;
 mod root;
 mod uncertain;
@@ -29,6 +30,7 @@ pub use eigenvalues::{
 pub use interval::Interval;
 pub use jet::Jet;
 pub use logarithm::{between_in_log, log_ratio};
+pub use quantile::quantile;
 pub use ratio::{Numerator, Ratio};
 pub use root::{bracketed_root, enclosing_radius};
 pub use uncertain::Uncertain;

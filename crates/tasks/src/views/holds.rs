@@ -1,6 +1,7 @@
 //! Holds as a picture: how far friction falls and how it heals with time.
 
-use twinslip::fit::{Estimate, Hold, Levels, healing_rate};
+use twinslip::fit::{Hold, Levels, healing_rate};
+use twinslip::number::Uncertain;
 use twinslip_output::plot::{Axis, Bars, Drawing, Mark, Panel, PlotSeries, Stroke, Symbol};
 
 /// Standard errors on each side of 95 %.
@@ -11,19 +12,18 @@ const BESIDE: f64 = 1.5;
 const FITTED: usize = 6;
 
 /// The holds that were measured with how healing grows with the time of the hold.
-pub fn measured_healing(holds: &[Hold]) -> Option<Estimate> {
+pub fn measured_healing(holds: &[Hold]) -> Option<Uncertain> {
     let all = holds.iter();
-    healing_rate(all.filter_map(|hold| Some((hold.duration, hold.measured?.healing))))
+    healing_rate(all.filter_map(|hold| Some((hold.duration, hold.measured.healing?))))
 }
 
 /// Healing, and the friction at the end of holds and at the peaks after them, against the duration.
 pub fn picture_of_holds(holds: &[Hold]) -> Drawing {
-    let healing = |levels: &Levels<Estimate>| levels.healing;
     let mut upper = panel(
         holds,
         "healing",
         "peak less friction before",
-        &[(&healing, 0)],
+        &[(|levels| levels.healing, 0)],
     );
     if let Some(rate) = measured_healing(holds) {
         upper.title = format!(
@@ -31,21 +31,19 @@ pub fn picture_of_holds(holds: &[Hold]) -> Drawing {
             rate.value, rate.uncertainty
         );
     }
-    let least = |levels: &Levels<Estimate>| levels.minimum;
-    let most = |levels: &Levels<Estimate>| levels.peak;
     let lower = panel(
         holds,
         "peaks, and ends of holds",
         "friction coefficient μ",
-        &[(&most, 1), (&least, 2)],
+        &[(|levels| levels.peak, 1), (|levels| levels.minimum, 2)],
     );
     Drawing::columns(vec![vec![upper, lower]])
 }
 
-/// Of some levels, each with its colour.
-type Shown<'a> = (&'a dyn Fn(&Levels<Estimate>) -> Estimate, usize);
+/// Which of the levels, with its colour.
+type Shown = (fn(&Levels) -> Option<Uncertain>, usize);
 
-fn panel(holds: &[Hold], title: &str, y: &str, shown: &[Shown<'_>]) -> Panel {
+fn panel(holds: &[Hold], title: &str, y: &str, shown: &[Shown]) -> Panel {
     let all = || holds.iter().map(|hold| hold.duration);
     let (low, high) = (
         all().fold(f64::INFINITY, f64::min),
@@ -59,7 +57,7 @@ fn panel(holds: &[Hold], title: &str, y: &str, shown: &[Shown<'_>]) -> Panel {
             let label = if i == 0 && record == 0 { "fitted" } else { "" };
             let (along, values) = fitted
                 .iter()
-                .map(|hold| (hold.duration, of(&hold.fitted).value))
+                .filter_map(|hold| Some((hold.duration, of(&hold.fitted)?.value)))
                 .unzip();
             let line = PlotSeries::new(label, along, values);
             panel
@@ -68,7 +66,7 @@ fn panel(holds: &[Hold], title: &str, y: &str, shown: &[Shown<'_>]) -> Panel {
         }
         let measured = holds
             .iter()
-            .filter_map(|hold| Some((hold.duration, of(&hold.measured?))));
+            .filter_map(|hold| Some((hold.duration, of(&hold.measured)?)));
         panel.marks.extend(measured.map(|(duration, one)| {
             Mark {
                 bars: Bars {

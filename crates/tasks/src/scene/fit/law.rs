@@ -53,15 +53,9 @@ impl WithProblem for SteadyBand<'_> {
     fn call<const N: usize>(&mut self, problem: &Problem<'_, N>) -> Result<Vec<[f64; 3]>> {
         /// Standard errors on each side of a 95 % band.
         const SIDE: f64 = 1.96;
-        let errors = self.fit.standard_errors();
         let of = |&v: &f64| {
             let (mu, slopes) = problem.steady(0, &self.fit.variables, v / self.reference_rate)?;
-            let each: Vec<f64> = slopes.iter().zip(&errors).map(|(s, e)| s * e).collect();
-            let pairs = (0..each.len()).flat_map(|i| (0..each.len()).map(move |j| (i, j)));
-            let variance: f64 = pairs
-                .map(|(i, j)| each[i] * self.fit.correlation[(i, j)] * each[j])
-                .sum();
-            let side = SIDE * variance.max(0.0).sqrt();
+            let side = SIDE * self.fit.propagated(&slopes);
             Ok([mu, mu - side, mu + side])
         };
         self.rates.iter().map(of).collect()

@@ -5,11 +5,9 @@ use super::motion::by_program;
 use super::options::FitOptions;
 use super::steps::{Steady, steady_parts};
 use twinslip::error::{Error, Result};
-use twinslip::fit::spread;
+use twinslip::fit::{HELD, spread};
 use twinslip::number::Uncertain;
 
-/// A load point that is slower than this part of its velocity before or after is held.
-const HELD: f64 = 1e-2;
 /// Parts of the samples by whose means it is known how certain the mean of all is, although noise lasts.
 const BATCHES: usize = 8;
 /// The part of a stretch at its end, in which friction has settled.
