@@ -52,7 +52,6 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "sweep",
         &[
-            "random",
             "section",
             "equilibrium",
             "integrate",
@@ -61,6 +60,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "series",
             "friction",
             "number",
+            "random",
         ],
     ),
     (
@@ -91,19 +91,18 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "fit",
         &[
-            "random",
             "integrate",
             "model",
             "field",
             "series",
             "number",
             "sundials",
+            "random",
         ],
     ),
     (
         "scene",
         &[
-            "random",
             "fit",
             "many",
             "sundials",
@@ -119,6 +118,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "friction",
             "number",
             "field",
+            "random",
         ],
     ),
     ("output", &[]),
@@ -159,7 +159,6 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "cli",
         &[
-            "random",
             "paper",
             "views",
             "scene",
@@ -175,6 +174,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "friction",
             "number",
             "output",
+            "random",
         ],
     ),
 ];

@@ -83,6 +83,27 @@ impl<'a> AnyField<'a> {
         self.0.dimension()
     }
 
+    /// The variable that is the phase of a periodic forcing, and what a whole turn of it is.
+    pub fn phase(&self) -> Option<(usize, f64)> {
+        self.0.phase()
+    }
+
+    /// The state whole turns of the forcing away that is nearest to another.
+    pub fn turned(&self, mut x: Vector, to: &Vector) -> Vector {
+        if let Some((place, turn)) = self.phase() {
+            x[place] -= ((x[place] - to[place]) / turn).round() * turn;
+        }
+        x
+    }
+
+    /// The same state as the one on which the flow from another comes to lie, or near which, after so long: whole turns of the forcing later.
+    pub(crate) fn landing(&self, x: &Vector, (from, time): (&Vector, f64)) -> Vector {
+        match self.phase() {
+            None => x.clone(),
+            Some(_) => self.turned(x.clone(), &(from + self.f(from) * time)),
+        }
+    }
+
     /// f(y).
     ///
     /// # Panics

@@ -11,6 +11,7 @@ use crate::series::{Jet3, Tangent};
 /// What a field of a dimension that the compiler knows does for one of any.
 pub(super) trait Flows: Send + Sync {
     fn dimension(&self) -> usize;
+    fn phase(&self) -> Option<(usize, f64)>;
     fn f(&self, y: &[f64]) -> Vector;
     fn jacobian(&self, y: &[f64]) -> Matrix;
     fn exact(&self, y: &[f64]) -> AnyExact;
@@ -158,6 +159,10 @@ fn matrix<const N: usize>(field: &dyn VectorField<N>, m: &Jacobian<N>) -> Matrix
 impl<const N: usize> Flows for Static<'_, N> {
     fn dimension(&self) -> usize {
         self.field().dimension()
+    }
+
+    fn phase(&self) -> Option<(usize, f64)> {
+        self.field().phase()
     }
 
     fn f(&self, y: &[f64]) -> Vector {

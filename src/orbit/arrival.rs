@@ -12,7 +12,7 @@ use crate::integrate::{AnyField, AnyStep, Control};
 
 /// A plane through a node, with its normal along the flow, and how far each variable moves along the orbit.
 struct Target<'a> {
-    node: &'a Vector,
+    node: Vector,
     normal: Vector,
     extents: &'a Vector,
     period: f64,
@@ -38,12 +38,12 @@ enum Arrival {
 
 impl Target<'_> {
     fn beyond(&self, x: &[f64]) -> f64 {
-        let each = x.iter().zip(self.node).zip(&self.normal);
+        let each = x.iter().zip(&self.node).zip(&self.normal);
         each.map(|((x, node), normal)| (x - node) * normal).sum()
     }
 
     fn away(&self, x: &Vector) -> f64 {
-        (x - self.node).component_div(self.extents).amax()
+        (x - &self.node).component_div(self.extents).amax()
     }
 
     /// The time from `start` to the plane, crossed with the flow: of several the one nearest to `expected`.
@@ -140,7 +140,7 @@ impl ShootingNodes {
         for k in (0..count).filter(|&k| uncertain(k)) {
             let next = (k + 1) % count;
             let target = Target {
-                node: &self.nodes[next],
+                node: field.landing(&self.nodes[next], (&self.nodes[k], self.durations[k])),
                 normal: normals(next),
                 extents: &extents,
                 period,

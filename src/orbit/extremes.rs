@@ -127,6 +127,11 @@ fn extremes_by(
         )?;
         begin += duration;
     }
+    // What a phase goes through is known: whole turns.
+    if let Some((place, turn)) = field.phase() {
+        let goes = begin * field.f(&shooting.nodes[0])[place];
+        all.ranges[place] = (0.0, (goes / turn).round() * turn);
+    }
     Ok(all)
 }
 

@@ -12,7 +12,7 @@ use super::{branch, no_orbit, other_orbit};
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::{Error, Result};
 use crate::field::Vector;
-use crate::integrate::{AnyField, Choice};
+use crate::integrate::{AnyField, Choice, Control};
 use crate::model::Loading;
 
 /// The time in which a loading alone raises the stress by some units: that of a stick-slip cycle, roughly.
@@ -346,6 +346,77 @@ impl<'a> Guesses<'a> {
             }
         }
         Ok(())
+    }
+
+    /// Newton's method on this duration, some periods of the forcing, from the start and from where a run from it has come to, once such a piece of the
+    /// run nearly closes; else from where each piece of a long run began, the last first.
+    pub fn forced(&mut self, period: f64, tracer: &mut Tracer, start: &Vector) -> Result<()> {
+        /// Pieces of the run that are looked at, and of those that do not close how many are tried.
+        const PIECES: usize = 400;
+        const TRIED: usize = 5;
+        /// A piece nearly closes whose ends are nearer, in parts of how far each variable moves.
+        const NEAR: f64 = 0.1;
+        let field = self.space.field();
+        let (mut here, mut begins) = (start.clone(), Vec::new());
+        let mut seen = [start.clone(), start.clone()];
+        for _ in 0..PIECES {
+            let there = tracer.flow(
+                field,
+                &here,
+                period,
+                Some(&mut |step| {
+                    for (i, &x) in step.y1.iter().enumerate() {
+                        seen[0][i] = seen[0][i].min(x);
+                        seen[1][i] = seen[1][i].max(x);
+                    }
+                    Ok(Control::Continue)
+                }),
+            );
+            let there = match there {
+                Ok(mut there) => {
+                    // But for rounding it is the same phase.
+                    if let Some((place, _)) = field.phase() {
+                        there[place] = start[place];
+                    }
+                    there
+                }
+                Err(error) if begins.is_empty() => return Err(error),
+                Err(_) => break,
+            };
+            let extents = (&seen[1] - &seen[0]).map(|extent| extent.max(f64::MIN_POSITIVE));
+            let gap = (&there - &here).component_div(&extents).amax();
+            if gap < NEAR && self.closes_once(tracer, &here, period) {
+                return Ok(());
+            }
+            begins.push(std::mem::replace(&mut here, there));
+        }
+        let tried = begins.iter().rev().take(TRIED - 1).chain([start]);
+        for begin in tried {
+            if self.closes_once(tracer, begin, period) {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// The same as [`Self::closes`], of orbits that are no shorter one traversed several times.
+    fn closes_once(&mut self, tracer: &mut Tracer, begin: &Vector, period: f64) -> bool {
+        if !self.closes(tracer, begin, period) {
+            return false;
+        }
+        let found = self.closed.last().expect("one is closed");
+        match traversals(tracer, self.space.field(), found) {
+            Ok(Some(times)) => {
+                self.closed.pop();
+                self.otherwise = Some(other_orbit(
+                    format!("the search ended on an orbit that is shorter by a factor of {times}"),
+                    period / f64::from(times),
+                    "give a `start` near the orbit, or ask for fewer `turns`",
+                ));
+                false
+            }
+            _ => true,
+        }
     }
 
     /// Whether Newton's method on the cycle of this duration from this point leads to an orbit of the symmetry.

@@ -13,7 +13,8 @@ use crate::field::Vector;
 use crate::integrate::{AnyField, Choice, Control};
 
 /// The periodic orbit at or near a start; with its period, roughly, no shorter cycle is taken for it. Without it, where the returns
-/// of the start lead to none, what a run from there settles on.
+/// of the start lead to none, what a run from there settles on. Under a periodic forcing the period is as many of its periods as the orbit shall
+/// last, one without it.
 ///
 /// # Errors
 /// [`Error::Input`] for a field of one variable; [`Error::NoOrbit`] says what was found instead; [`Error::NotConverged`]; those
@@ -31,6 +32,12 @@ pub fn find_from(
     }
     let found = find_by(field, start, period, accuracy);
     match found {
+        // A run under a forcing that lasts to its end is not stiff.
+        Err(error @ (Error::NoOrbit { .. } | Error::NotConverged { .. }))
+            if field.phase().is_some() =>
+        {
+            Err(error)
+        }
         // Where the explicit method gets nowhere the orbit may be that of a stiff system.
         Err(error) if accuracy.method == Choice::Auto => {
             let stiff = OrbitAccuracy {
@@ -61,6 +68,10 @@ fn find_by(
     };
     let mut guesses = Guesses::new(&space, Symmetry::Symmetric);
     match period {
+        _ if field.phase().is_some() => {
+            let period = period.or_else(|| forcing_period(field, start));
+            guesses.forced(period.unwrap_or(f64::NAN), &mut tracer, start)?;
+        }
         Some(period) => guesses.over(period, &mut tracer, start)?,
         None => {
             let rough = rough_period(&mut tracer, field, start)?;
@@ -75,7 +86,8 @@ fn find_by(
             )
         }));
     }
-    let found = completed(guesses, None, accuracy, period.is_some())?;
+    let whole_cycle = period.is_some() || field.phase().is_some();
+    let found = completed(guesses, None, accuracy, whole_cycle)?;
     if !found.orbit.in_family {
         return Ok(found);
     }
@@ -91,6 +103,12 @@ fn find_by(
         },
         _ => found,
     })
+}
+
+/// The period of a periodic forcing.
+fn forcing_period(field: &AnyField<'_>, y: &Vector) -> Option<f64> {
+    let (place, turn) = field.phase()?;
+    Some(turn / field.f(y)[place])
 }
 
 /// What an implicit step takes, in steps of Taylor's method.

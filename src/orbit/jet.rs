@@ -152,7 +152,8 @@ impl<'a> PoincareMaps<'a> {
         let start = (0..count).map(|i| Jet3::linear(nodes[k][i], [a[i], b[i]]));
         let start: Vec<_> = start.collect();
         let span = (0.0, durations[k]);
-        let target = (&onto.column(0).into_owned(), &nodes[next]);
+        let landing = self.field.landing(&nodes[next], (&nodes[k], durations[k]));
+        let target = (&onto.column(0).into_owned(), &landing);
         let landed = self
             .field
             .transport_onto(&mut self.taylor, span, &start, target);
@@ -160,7 +161,7 @@ impl<'a> PoincareMaps<'a> {
         let component = |j: usize| {
             let mut sum = Jet3::default();
             for i in 0..count {
-                sum = sum + (end[i] - Jet3::constant(nodes[next][i])).scaled(onto[(i, j)]);
+                sum = sum + (end[i] - Jet3::constant(landing[i])).scaled(onto[(i, j)]);
             }
             sum
         };

@@ -8,6 +8,7 @@ use super::arc::{Arc, Tracer};
 use super::continuation_point::TangentVector;
 use super::cyclic::{self, Rows};
 use super::family::ParametrisedField;
+use super::settle::axis;
 use super::shooting_nodes::ShootingNodes;
 use super::spread::extents;
 use crate::error::Result;
@@ -62,13 +63,17 @@ pub(super) struct ArcLogs {
 }
 
 impl Linear {
-    /// In the planes at right angles to the flow.
+    /// In the planes at right angles to the flow, or of one phase of a forcing.
     pub fn new(
         tracer: &mut Tracer,
         field: &AnyField<'_>,
         shooting: &ShootingNodes,
     ) -> Result<Self> {
-        let frames = shooting.nodes.iter().map(|x| frame(&field.f(x))).collect();
+        let normal = |x: &Vector| match field.phase() {
+            None => field.f(x),
+            Some((place, _)) => axis(x.len(), place),
+        };
+        let frames = shooting.nodes.iter().map(|x| frame(&normal(x))).collect();
         Self::in_frames(tracer, field, shooting, Free::NONE, Shared::new(frames))
     }
 
@@ -167,7 +172,8 @@ impl Linear {
                 column.axpy(-along, &inflow, 1.0);
             }
             maps.push(axes(onto).tr_mul(&across));
-            gaps.push(&arc.end - &shooting.nodes[next]);
+            let node = &shooting.nodes[next];
+            gaps.push(field.turned(arc.end.clone(), node) - node);
             logs.push(ArcLogs {
                 volume: arc.volume(),
                 transverse: arc.log_transverse,

@@ -1,8 +1,9 @@
 //! A system whose equations were read, over one or two of its parameters.
 
 use super::family::ParametrisedField;
+use super::settle::axis;
 use crate::error::{Error, Result};
-use crate::field::place;
+use crate::field::{Vector, place};
 use crate::integrate::AnyField;
 use crate::model::TextSystem;
 use std::borrow::Cow;
@@ -133,6 +134,14 @@ impl ParametrisedField for OverText<'_> {
 
     fn is_any_system(&self) -> bool {
         true
+    }
+
+    fn normal(&self, _x: &Vector, flow: Vector) -> Vector {
+        // Under a forcing planes of one phase: the nodes keep theirs, and the time between them is what the phases say.
+        match self.system.phase() {
+            None => flow,
+            Some((place, _)) => axis(flow.len(), place),
+        }
     }
 
     fn units(&self) -> Option<&[f64]> {

@@ -35,6 +35,7 @@ pub(super) fn passages(
         offset: level,
         direction: Crossing::Downwards,
         chart: SeriesVariables::Plain,
+        turn: None,
     };
     let (mut zeros, mut here) = (Zeros::default(), Vec::new());
     let mut found = Vec::new();

@@ -234,7 +234,8 @@ pub(super) fn traversals(
         } else {
             tracer.flow(field, &shooting.nodes[k], part - before, None)?
         };
-        if (there - &shooting.nodes[0]).amax() < SAME * extent {
+        let begin = &shooting.nodes[0];
+        if (field.turned(there, begin) - begin).amax() < SAME * extent {
             return Ok(Some(times));
         }
     }

@@ -255,6 +255,9 @@ impl Recorder {
     /// Finds where a step crosses the surface.
     fn cross(&mut self, watched: &Watched<'_>, step: &AnyStep<'_>) -> Result<()> {
         let Watched { field, surface, .. } = *watched;
+        if surface.turn.is_some() {
+            return self.cross_phases(field, surface, step);
+        }
         let Some(series) = step.series() else {
             return crossings(field, surface, step, &mut self.zeros, &mut self.found);
         };
@@ -266,6 +269,32 @@ impl Recorder {
             &mut self.found,
         );
         Ok(())
+    }
+
+    /// The same of one phase of a forcing: every plane between the phases at the ends of the step is crossed.
+    fn cross_phases(
+        &mut self,
+        field: &AnyField<'_>,
+        surface: &Surface,
+        step: &AnyStep<'_>,
+    ) -> Result<()> {
+        let mut y = step.y0.to_vec();
+        let place = surface.normal.iamax();
+        loop {
+            let plane = surface.ahead(&y);
+            if plane.height(step.y1) < 0.0 {
+                return Ok(());
+            }
+            let rate = field.f(&Vector::from_column_slice(step.y0))[place];
+            let time = ((plane.offset - step.y0[place]) / rate).min(step.length);
+            let state = step.after(time).iter().copied().collect();
+            self.found.push(Passage {
+                time,
+                crossing: surface.direction,
+                state: surface.on_first(state),
+            });
+            y[place] = plane.offset;
+        }
     }
 
     fn arrive(&mut self, watched: &Watched<'_>, here: Return, see: See<'_>) {

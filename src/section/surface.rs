@@ -9,6 +9,7 @@ use crate::friction::{Law, steady_stress};
 use crate::integrate::{AnyField, AnyIntegrator, Control, of_dimension};
 use crate::number::{DoubleDouble, polynomial::Crossing};
 use crate::series::{Section, Zeros};
+use std::borrow::Cow;
 
 /// From the state that a field is integrated in to the variables of its series.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,6 +53,8 @@ pub struct Surface {
     pub direction: Crossing,
     /// What the variables are.
     pub chart: SeriesVariables,
+    /// Where the normal is along the phase of a periodic forcing: a whole turn of it, after which the plane comes again.
+    pub turn: Option<f64>,
 }
 
 /// tau_ss of the mean slip rate: the stress of the symmetric steady state, and the section of the paper.
@@ -67,10 +70,46 @@ impl Surface {
             offset: tau,
             direction,
             chart: SeriesVariables::LogStates,
+            turn: None,
         }
     }
 
-    /// normal . x - offset at a state.
+    /// The stroboscopic section: one phase of a periodic forcing, whose place among so many variables and whole turn these are.
+    pub fn stroboscopic(dimension: usize, (place, turn): (usize, f64), phase: f64) -> Self {
+        Surface {
+            normal: Vector::from_fn(dimension, |i, _| f64::from(u8::from(i == place))),
+            offset: phase,
+            direction: Crossing::Upwards,
+            chart: SeriesVariables::Plain,
+            turn: Some(turn),
+        }
+    }
+
+    /// The same plane as it comes next after a state: turns later, where it comes again.
+    pub(crate) fn ahead(&self, y: &[f64]) -> Cow<'_, Self> {
+        /// Of a turn: a state that is nearer is on the plane.
+        const ON: f64 = 1e-9;
+        let Some(turn) = self.turn else {
+            return Cow::Borrowed(self);
+        };
+        let phase = y[self.normal.iamax()];
+        let passed = ((phase - self.offset) / turn + ON).floor();
+        Cow::Owned(Surface {
+            offset: self.offset + (passed + 1.0) * turn,
+            turn: None,
+            ..self.clone()
+        })
+    }
+
+    /// A state of a plane that has come again, on the first.
+    pub(crate) fn on_first(&self, mut state: Vec<f64>) -> Vec<f64> {
+        if self.turn.is_some() {
+            state[self.normal.iamax()] = self.offset;
+        }
+        state
+    }
+
+    /// normal . x - offset at a state; of a plane that comes again, to the nearest one.
     ///
     /// # Panics
     /// Where the state has fewer components than the normal.
@@ -83,7 +122,11 @@ impl Surface {
                 sum += normal * self.chart.variable(y, i);
             }
         }
-        sum - self.offset
+        let height = sum - self.offset;
+        match self.turn {
+            None => height,
+            Some(turn) => height - (height / turn).round() * turn,
+        }
     }
 
     /// Whether a step that begins at y and in which the first component strays no farther than `reach` may pass the plane, where the
@@ -92,6 +135,9 @@ impl Surface {
     pub(crate) fn may_be_passed(&self, y: &[f64], sign: f64, reach: f64) -> bool {
         /// For the rounding of the bound.
         const MARGIN: f64 = 1.000_001;
+        if self.turn.is_some() {
+            return true;
+        }
         let (height, normal) = (self.height(y), self.normal.as_slice());
         // Of the other components nothing is known.
         height.signum() != sign
@@ -221,9 +267,14 @@ pub fn return_map(
     patience: f64,
 ) -> Result<Landing> {
     of_dimension(surface.normal.len(), field.dimension())?;
-    let section = surface.section();
+    let plane = surface.ahead(from.as_slice());
+    let section = plane.section();
     let mut zeros = Zeros::default();
-    zeros.sign = surface.sign_behind();
+    zeros.sign = match surface.turn {
+        None => surface.sign_behind(),
+        // Before the plane that comes next.
+        Some(_) => -surface.sign_behind(),
+    };
     let mut found = Vec::new();
     let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
     let (mut steps, mut now) = (0, DoubleDouble::ZERO);
@@ -263,7 +314,7 @@ pub fn return_map(
     let (_, derivative) = derivative_along(field, surface, by, &points, now)?;
     Ok(Landing {
         time: now.hi(),
-        state: Vector::from_vec(passage.state),
+        state: Vector::from_vec(surface.on_first(passage.state)),
         derivative,
     })
 }

@@ -67,7 +67,9 @@ impl SectionPlace {
     pub fn inward(self, units: &MotionUnits) -> Self {
         match self {
             SectionPlace::Untimed(mut surface) => {
-                surface.offset /= units.sizes[surface.normal.iamax()];
+                let size = units.sizes[surface.normal.iamax()];
+                surface.offset /= size;
+                surface.turn = surface.turn.map(|turn| turn / size);
                 SectionPlace::Untimed(surface)
             }
             place => place,

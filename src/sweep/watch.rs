@@ -114,7 +114,11 @@ impl SweepRun {
             field: Rc::new(point.field),
             lane: point.lane,
             equal_parts: point.equal_parts,
-            variable: surface.normal.iamax(),
+            // A phase is seen by its section alone: what rows have of the range is the first variable's.
+            variable: match surface.turn {
+                None => surface.normal.iamax(),
+                Some(_) => 0,
+            },
             place: point.section,
             surface,
             watching: Watching {
@@ -434,6 +438,7 @@ pub(super) fn across(variable: usize, dimension: usize, value: f64) -> Surface {
         offset: value,
         direction: Crossing::Downwards,
         chart: SeriesVariables::Plain,
+        turn: None,
     }
 }
 

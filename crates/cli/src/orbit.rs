@@ -241,7 +241,7 @@ fn object(plan: &OrbitPlan, orbit: &Orbit) -> Value {
         "point": point,
         "point_uncertainty": orbit.point_uncertainty,
         "extremes": extremes.into_iter().collect::<Map<String, Value>>(),
-        "multipliers": multipliers(orbit),
+        "multipliers": multipliers(orbit, plan.system.forcing_period().is_some()),
         "log_multipliers": logs,
         "trivial_defect": orbit.floquet.trivial_defect,
         "liouville_defect": orbit.floquet.liouville_defect,
@@ -249,6 +249,10 @@ fn object(plan: &OrbitPlan, orbit: &Orbit) -> Value {
         "family": orbit.in_family,
         "method": orbit.method,
     });
+    if let Some(period) = plan.system.forcing_period() {
+        object["forcing_period"] = json!(units.outward(Quantity::Time, period));
+        object["turns"] = json!((orbit.period.value / period).round() as u64);
+    }
     if let Some(symmetry) = plan.symmetry(orbit) {
         let rate = views::known(orbit.slip_rate_max);
         let rate = rate.map(|v| units.outward(Quantity::SlipRate, v));
@@ -261,9 +265,12 @@ fn object(plan: &OrbitPlan, orbit: &Orbit) -> Value {
     object
 }
 
-/// All multipliers, the trivial one first; of a conjugate pair the second one below the axis.
-fn multipliers(orbit: &Orbit) -> Vec<[f64; 2]> {
-    let mut multipliers = vec![[1.0, 0.0]];
+/// All multipliers, the trivial one first, which there is none of under a forcing; of a conjugate pair the second one below the axis.
+fn multipliers(orbit: &Orbit, is_forced: bool) -> Vec<[f64; 2]> {
+    let mut multipliers = match is_forced {
+        true => Vec::new(),
+        false => vec![[1.0, 0.0]],
+    };
     let mut above = true;
     for multiplier in &orbit.floquet.multipliers {
         let mu = multiplier.value();

@@ -112,6 +112,11 @@ pub trait VectorField<const N: usize>: Send + Sync {
         false
     }
 
+    /// The variable that is the phase of a periodic forcing, and what a whole turn of it is: the field is the same after that. `None` where there is none.
+    fn phase(&self) -> Option<(usize, f64)> {
+        None
+    }
+
     /// A state at the end of a step in which the double next to the time grows by h, with the time there if that is a variable: the sum of what a
     /// method adds up in a step is rounded, and over a million steps time would be late by more than the tolerance.
     fn timed(&self, mut end: State<N>, begin: &State<N>, h: f64) -> State<N> {

@@ -29,7 +29,9 @@ pub(super) const WORK: usize = 20_000_000;
 pub(super) const ARC: usize = 100_000;
 /// The first step onto a branch that bifurcates.
 const ASIDE: f64 = 0.02;
-/// What is said of an orbit that was found where no Hopf point is met.
+/// What is said of an orbit that was found by a search.
+const FOUND: &str = "begins here, at an orbit found by a search";
+/// The same where branches begin at Hopf points as a rule.
 const BEGUN: &str =
     "begins here, at an orbit found by a search: there is no Hopf point in the range";
 
@@ -152,6 +154,19 @@ impl<'b, 'a> OrbitBranches<'b, 'a> {
         known
     }
 
+    /// Whether two orbits are one, as far as their extremes are found.
+    pub fn are_same(
+        &self,
+        chart: Chart<'_>,
+        (one, other): (&ContinuationPoint, &ContinuationPoint),
+    ) -> bool {
+        let end = |site| End::of(&self.branch.system, chart, site);
+        match (end(one), end(other)) {
+            (Ok(one), Ok(other)) => one.is(&other),
+            _ => true,
+        }
+    }
+
     /// The branches through the orbits that are found at the ends of the range or, where there are none, at a value within.
     fn along_found(&mut self, found: FoundOrbits<'_>, teller: &mut Teller<'_>) -> Result<()> {
         let (from, to) = self.branch.range;
@@ -169,7 +184,9 @@ impl<'b, 'a> OrbitBranches<'b, 'a> {
                     return Ok(());
                 }
                 // An orbit at which no branch can begin leaves the others.
-                let _ = self.along_orbit(begin, Some(BEGUN), teller);
+                let forced = self.branch.system.family.field(at).phase().is_some();
+                let note = if forced { FOUND } else { BEGUN };
+                let _ = self.along_orbit(begin, Some(note), teller);
             }
         }
         Ok(())

@@ -302,7 +302,7 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         let tracer = &mut palc.curve.corrector.tracer;
         let first = &shooting.nodes[0];
         let after = tracer.flow(&field, first, half, None).ok()?;
-        let off = (after - first).component_div(&shooting.sizes());
+        let off = (field.turned(after, first) - first).component_div(&shooting.sizes());
         (off.amax() < ONE).then_some(Back::Jumped)
     }
 
@@ -327,6 +327,9 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
                 .abs()
                 .max(periods.ln().abs())
         };
-        self.begin.as_ref().is_some_and(|begin| apart(begin) < SAME)
+        self.begin.as_ref().is_some_and(|begin| {
+            // Under a forcing other orbits have that period too.
+            apart(begin) < SAME && self.set.are_same(self.chart, (site, begin))
+        })
     }
 }

@@ -22,6 +22,8 @@ pub struct TextSystem {
     states: Vec<&'static str>,
     /// Whether the formulas name time: it is then one variable more, the last, and its rate is 1.
     is_timed: bool,
+    /// Whether the last state is the phase of a periodic forcing.
+    is_forced: bool,
     names: Vec<&'static str>,
     parameters: Vec<f64>,
     /// The units of the states, in those of the formulas as they were read.
@@ -46,6 +48,7 @@ impl TextSystem {
             slip_rates: None,
             states: states.iter().map(|name| kept(name)).collect(),
             is_timed: false,
+            is_forced: false,
             names: parameters.iter().map(|(name, _)| kept(name)).collect(),
             parameters: parameters.iter().map(|(_, value)| *value).collect(),
             sizes: vec![1.0; states.len()],
@@ -74,6 +77,27 @@ impl TextSystem {
             is_timed: true,
             ..Self::new(rates, states, parameters)?
         })
+    }
+
+    /// The same system, whose last state is the phase of a periodic forcing: a whole turn is 1, and the formulas are the same after it.
+    pub fn forced(self) -> Self {
+        TextSystem {
+            is_forced: true,
+            ..self
+        }
+    }
+
+    /// The place of the state that is the phase of a periodic forcing, and what a whole turn of it is in the unit of that state.
+    pub fn phase(&self) -> Option<(usize, f64)> {
+        let last = self.states.len() - 1;
+        self.is_forced.then(|| (last, 1.0 / self.sizes[last]))
+    }
+
+    /// The period of the forcing, where there is one.
+    pub fn forcing_period(&self) -> Option<f64> {
+        let (place, turn) = self.phase()?;
+        let rates: Vec<f64> = self.rates(&vec![0.0; self.variables()]);
+        Some(turn / rates[place])
     }
 
     /// The same of interfaces that slide, with their slip rates in the same states and parameters. Where there is a rate more than there are
@@ -435,6 +459,10 @@ impl<const N: usize> VectorField<N> for TextField<'_, N> {
 
     fn last_is_time(&self) -> bool {
         self.system.is_timed
+    }
+
+    fn phase(&self) -> Option<(usize, f64)> {
+        self.system.phase()
     }
 
     fn parametrised(&self) -> Option<&dyn Parametrised<N>> {

@@ -168,6 +168,12 @@ impl AnySystem {
         self.formulas().is_some_and(|model| model.system.is_timed())
     }
 
+    /// The period of a forcing, where its phase is a state.
+    pub fn forcing_period(&self) -> Option<f64> {
+        let model = self.formulas()?;
+        model.system.forcing_period()
+    }
+
     /// How many interfaces, equal ones of a cluster together, each state beyond the stress stands for; none of what is no interface.
     pub fn clusters(&self) -> &[usize] {
         match &self.0 {

@@ -52,6 +52,9 @@ pub struct SearchOptions {
     /// With --start of an orbit: its approximate period
     #[arg(long, value_name = "T", value_parser = number, requires = "start", allow_negative_numbers = true)]
     pub period_guess: Option<f64>,
+    /// With a periodic forcing (the key period of a --system, or --modulate): orbits last Q of its periods [default: 1]
+    #[arg(long, value_name = "Q", value_parser = count)]
+    pub turns: Option<usize>,
 }
 
 impl SearchOptions {

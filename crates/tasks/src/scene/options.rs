@@ -443,6 +443,9 @@ pub struct OrbitOptions {
     /// Approximate period; shorter cycles are then not accepted
     #[arg(long, value_name = "T", value_parser = number, allow_negative_numbers = true, help_heading = "Orbit")]
     pub period_guess: Option<f64>,
+    /// With a periodic forcing (the key period of a file, or --modulate): the orbit lasts Q of its periods [default: 1]
+    #[arg(long, value_name = "Q", value_parser = count, help_heading = "Orbit")]
+    pub turns: Option<usize>,
     /// Rows over one period, as in integrate: N equally spaced in time, from result.orbit.point back to it. A table or CSV then holds these
     /// rows, and JSON has them as result.rows
     #[arg(long, value_name = "N", value_parser = count, help_heading = "Orbit")]

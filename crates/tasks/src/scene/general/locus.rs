@@ -281,9 +281,12 @@ impl<'s> GeneralLocusPlan<'s> {
             let own = [self.subject.value(names[0]), self.subject.value(names[1])];
             // Without values of their own there is no orbit either.
             if let [Ok(first), Ok(second)] = own {
-                orbit = self
-                    .subject
-                    .orbit(&[(names[0], first), (names[1], second)])?;
+                let values = [(names[0], first), (names[1], second)];
+                orbit = self.subject.orbit(&values)?;
+                // Where nothing rests there is no Hopf point to begin at.
+                if orbit.is_none() && !self.subject.may_rest() {
+                    orbit = self.subject.orbits(&values).into_iter().next();
+                }
                 if let Some(orbit) = &mut orbit {
                     orbit.at = [0, 1].map(|i| self.free[i].coordinate.inward([first, second][i]));
                 }

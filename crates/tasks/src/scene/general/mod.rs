@@ -54,6 +54,11 @@ pub trait Subject: Described + Sync {
     /// Those of the search.
     fn equilibria(&self, values: &[(&str, f64)]) -> Result<Vec<Vector>>;
 
+    /// Whether it may have equilibria: under a periodic forcing nothing rests.
+    fn may_rest(&self) -> bool {
+        true
+    }
+
     /// The box that branches of equilibria do not leave, in the units in which it is followed; empty where none was given.
     fn bounds(&self) -> Vec<StateRange> {
         Vec::new()

@@ -12,7 +12,6 @@ use twinslip::bifurcation::general::{GeneralPoint, GeneralSolution, StateRange};
 use twinslip::equilibrium::Symmetry;
 use twinslip::error::{Error, Result};
 use twinslip::field::Vector;
-use twinslip::friction::positive;
 use twinslip::integrate::{AnyField, Choice, MotionUnits, Tolerances};
 use twinslip::model::TextSystem;
 use twinslip::number::Interval;
@@ -34,6 +33,8 @@ pub struct TextSubject {
     pub place: Option<SearchPlace>,
     /// A point at or near an orbit and the period, roughly.
     pub orbit: Option<(Vector, Option<f64>)>,
+    /// How many periods of a forcing orbits last.
+    turns: usize,
 }
 
 impl Described for TextSubject {
@@ -54,14 +55,14 @@ impl TextSubject {
     /// Those of the box and of the start.
     pub fn new(model: TextModel, search: &SearchOptions, orbits: bool) -> Result<Self> {
         let (within, start) = (search.within.as_deref(), search.start.as_deref());
-        let period = search
-            .period_guess
-            .map(|period| positive("period-guess", period))
-            .transpose()?
-            .map(|period| model.units().inward(Quantity::Time, period));
+        if !orbits {
+            model.may_rest()?;
+        }
+        let period = model.period(search.turns, search.period_guess)?;
+        let turns = search.turns.unwrap_or(1);
         let orbit = match start.filter(|_| orbits) {
             Some(start) => Some((model.start(Some(start))?, period)),
-            None if period.is_some() => {
+            None if search.period_guess.is_some() => {
                 let what = "`period_guess` needs a `start` near the orbit";
                 return Err(Error::Input(what.into()));
             }
@@ -99,11 +100,18 @@ impl TextSubject {
             model,
             place,
             orbit,
+            turns,
         })
     }
 
     fn at(&self, values: &[(&str, f64)]) -> Result<TextSystem> {
         Self::set(&self.model.system, values)
+    }
+
+    /// The period of orbits under a forcing.
+    fn forced_period(&self, system: &TextSystem) -> Option<f64> {
+        let period = system.forcing_period()?;
+        Some(self.turns as f64 * period)
     }
 
     fn set(system: &TextSystem, values: &[(&str, f64)]) -> Result<TextSystem> {
@@ -145,6 +153,9 @@ impl Subject for TextSubject {
     }
 
     fn equilibria(&self, values: &[(&str, f64)]) -> Result<Vec<Vector>> {
+        if !self.may_rest() {
+            return Ok(Vec::new());
+        }
         let system = self.at(values)?;
         let model = self.model.with(system);
         let place = match &self.place {
@@ -162,6 +173,10 @@ impl Subject for TextSubject {
         Ok(state
             .map(|state| self.units.inward(&Vector::from_vec(state.collect())))
             .collect())
+    }
+
+    fn may_rest(&self) -> bool {
+        self.system.phase().is_none()
     }
 
     fn bounds(&self) -> Vec<StateRange> {
@@ -186,11 +201,13 @@ impl Subject for TextSubject {
         let Some((start, period)) = &self.orbit else {
             return Ok(None);
         };
-        let field = AnyField::of_text(Cow::Owned(Self::set(&self.system, values)?))?;
+        let system = Self::set(&self.system, values)?;
+        let given = period.map(|t| t / self.units.time);
         let (start, period) = (
             self.units.inward(start),
-            period.map(|t| t / self.units.time),
+            self.forced_period(&system).or(given),
         );
+        let field = AnyField::of_text(Cow::Owned(system))?;
         let found = find_from(&field, &start, period, &OrbitAccuracy::unchecked())?;
         Ok(Some(found.orbit.beginning()))
     }
@@ -199,9 +216,11 @@ impl Subject for TextSubject {
         let search = || -> Result<_> {
             let model = self.model.with(self.at(values)?);
             let start = orbit_start(None, Symmetry::Symmetric, &model)?;
-            let field = AnyField::of_text(Cow::Owned(Self::set(&self.system, values)?))?;
+            let system = Self::set(&self.system, values)?;
+            let period = self.forced_period(&system);
+            let field = AnyField::of_text(Cow::Owned(system))?;
             let start = self.units.inward(&start);
-            find_from(&field, &start, None, &OrbitAccuracy::unchecked())
+            find_from(&field, &start, period, &OrbitAccuracy::unchecked())
         };
         search().map_or(Vec::new(), FoundOrbit::beginnings)
     }

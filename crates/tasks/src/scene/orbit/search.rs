@@ -4,7 +4,7 @@ use super::super::any_system::AnySystem;
 use super::super::equations::Subspace;
 use super::super::options::OrbitOptions;
 use super::super::plan::start;
-use super::super::system::{Described, System};
+use super::super::system::System;
 use super::super::text::{orbit_start, symmetry as symmetry_of_start};
 use super::super::units::Quantity;
 use std::sync::OnceLock;
@@ -45,18 +45,20 @@ pub(super) enum Search {
 impl Search {
     pub fn new(options: &OrbitOptions, system: &AnySystem) -> Result<Self> {
         if let Some(model) = system.formulas() {
-            let guess = |period| {
-                let period = positive("period-guess", period)?;
-                Ok(system.units().inward(Quantity::Time, period))
-            };
             let symmetry = symmetry_of_start(options, model)?;
             let start = orbit_start(options.start.as_deref(), symmetry, model)?;
             return Ok(Search::FromStart {
                 units: system.units_of_run(&start)?,
-                period: options.period_guess.map(guess).transpose()?,
+                period: model.period(options.turns, options.period_guess)?,
                 start,
                 logarithmic: OnceLock::new(),
             });
+        }
+        if options.turns.is_some() {
+            return Err(Error::Input(
+                "`turns` counts periods of a forcing, and nothing is forced here: give `modulate`"
+                    .into(),
+            ));
         }
         let (system, loading) = system.closed_forms().expect("a system without formulas");
         let slab = InterfaceSystem {

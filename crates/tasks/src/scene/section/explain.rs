@@ -67,6 +67,12 @@ pub fn explain_section(plan: &SectionPlan) -> String {
 }
 
 fn section(plan: &SectionPlan) -> String {
+    if plan.system.forcing_period().is_some() {
+        return format!(
+            "stroboscopic, at the phase {} of the forcing",
+            plan.outward_value()
+        );
+    }
     let sense = match plan.direction {
         Crossing::Downwards => "falling",
         Crossing::Upwards | Crossing::Touching => "rising",

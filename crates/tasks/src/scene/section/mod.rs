@@ -14,6 +14,7 @@ use super::any_system::AnySystem;
 use super::equations::Subspace;
 use super::options::{SectionOptions, number};
 use super::system::Described;
+use super::text::PHASE;
 use super::units::Quantity;
 use serde_json::Value;
 use twinslip::error::{Error, Result};
@@ -86,12 +87,14 @@ impl SectionPlan {
         if units.signs[state] * value <= 0.0 {
             units.signs[state] = 0.0;
         }
-        let patience = match options.patience {
-            Some(patience) => {
+        let patience = match (options.patience, system.forcing_period()) {
+            (Some(patience), _) => {
                 let patience = positive("patience", patience)?;
                 system.units().inward(Quantity::Time, patience)
             }
-            None => system.patience(&units),
+            // A phase comes again in a period.
+            (None, Some(period)) => 2.0 * period,
+            (None, None) => system.patience(&units),
         };
         let (subspace, start) = system.reduced(start);
         Ok(SectionPlan {
@@ -99,7 +102,7 @@ impl SectionPlan {
             start,
             state,
             value,
-            direction: if options.upwards {
+            direction: if options.upwards || system.forcing_period().is_some() {
                 Crossing::Upwards
             } else {
                 Crossing::Downwards
@@ -138,6 +141,11 @@ impl SectionPlan {
 
     /// The section in the units of the run.
     fn surface(&self, units: &MotionUnits) -> Surface {
+        if self.system.forcing_period().is_some() {
+            let size = units.sizes[self.state];
+            let phase = (self.state, 1.0 / size);
+            return Surface::stroboscopic(self.start.len(), phase, self.value / size);
+        }
         // In the subspace one variable stands for both states.
         let place = self.state.min(self.start.len() - 1);
         let direction = units.direction(place);
@@ -151,8 +159,25 @@ impl SectionPlan {
             normal,
             direction: self.direction,
             chart,
+            turn: None,
         }
     }
+}
+
+/// The phase of a stroboscopic section.
+///
+/// # Errors
+/// [`Error::Input`] for a text that is not phase=VALUE with a value from 0 on and below 1.
+pub(in crate::scene) fn phase_of_section(text: &str) -> Result<f64> {
+    let read = text
+        .split_once('=')
+        .filter(|(name, _)| name.trim() == PHASE);
+    let read = read.and_then(|(_, value)| number(value.trim()).ok());
+    read.filter(|phase| (0.0..1.0).contains(phase)).ok_or_else(|| {
+        Error::Input(format!(
+            "`surface` {text:?} must be {PHASE}=VALUE, from 0 on and below 1: the section of a forced system is at a phase of its forcing"
+        ))
+    })
 }
 
 /// That the numbers of returns are allowed.
@@ -177,8 +202,12 @@ fn counted(options: &SectionOptions) -> Result<()> {
     Ok(())
 }
 
-/// STATE=VALUE, and of interfaces stress=auto.
+/// STATE=VALUE, and of interfaces stress=auto; under a forcing one of its phases, 0 where nothing is said.
 fn surface(text: Option<&str>, system: &AnySystem) -> Result<(usize, f64)> {
+    if system.forcing_period().is_some() {
+        let last = system.states().len() - 1;
+        return Ok((last, text.map_or(Ok(0.0), phase_of_section)?));
+    }
     let names = || system.states().join(", ");
     if text.is_none_or(|text| text == USUAL_SURFACE)
         && let Some(stress) = system.mean_stress()?

@@ -4,6 +4,7 @@ use super::axes::Axes;
 use super::interfaces::{PATIENCE, is_loading};
 use super::options::SweepOptions;
 use crate::scene::options::ModelOptions;
+use crate::scene::section::phase_of_section;
 use crate::scene::system::Described;
 use crate::scene::text::TextModel;
 use crate::scene::units::Quantity;
@@ -16,6 +17,9 @@ use twinslip::number::polynomial::Crossing;
 use twinslip::random::Random;
 use twinslip::section::{Surface, usual_patience};
 use twinslip::sweep::{Enclosure, SectionPlace, SystemPoint, SystemPoints, start_of_interfaces};
+
+/// Periods of a forcing in which its phase comes again for certain.
+const WAITED: f64 = 2.0;
 
 /// A system from a file of which some parameters vary.
 #[derive(Debug)]
@@ -125,6 +129,9 @@ impl TextPoints {
 
     /// The place of the state that the section is in.
     pub fn section_state(&self) -> usize {
+        if self.model.system.phase().is_some() {
+            return 0;
+        }
         match &self.begins {
             Some((_, SectionPlace::Middle(state))) => *state,
             Some((_, SectionPlace::Known(surface, _) | SectionPlace::Untimed(surface))) => {
@@ -138,6 +145,13 @@ impl TextPoints {
 /// Where the section of a system is.
 fn section(text: Option<&str>, model: &TextModel) -> Result<SectionPlace> {
     let state = |name: &str| model.state("the state of `surface`", name.trim());
+    if let Some(phase) = model.system.phase() {
+        let value = text.map_or(Ok(0.0), phase_of_section)?;
+        let states = model.system.states().len();
+        return Ok(SectionPlace::Untimed(Surface::stroboscopic(
+            states, phase, value,
+        )));
+    }
     let Some(text) = text else {
         return Ok(SectionPlace::Middle(0));
     };
@@ -190,15 +204,26 @@ impl SystemPoints for TextPoints {
                 units = MotionUnits::measured(&system, first)?.rounded();
                 let mut begin = units.inward(first);
                 if start > 0 {
-                    for x in begin.iter_mut() {
+                    let phase = system.phase().map(|(place, _)| place);
+                    for (_, x) in begin
+                        .iter_mut()
+                        .enumerate()
+                        .filter(|(i, _)| Some(*i) != phase)
+                    {
                         *x += random.between((-1.0, 1.0)) * (1.0 + x.abs());
                     }
                 }
-                (begin, section.clone().inward(&units), false)
+                let mut section = section.clone().inward(&units);
+                if let SectionPlace::Untimed(surface) = &section
+                    && let Some(period) = system.forcing_period()
+                {
+                    section = SectionPlace::Known(surface.clone(), WAITED * period / units.time);
+                }
+                (begin, section, false)
             }
             (None, Some(slab)) => {
                 let stress = slab.mean_stress(&system)?;
-                let begin = match start {
+                let mut begin = match start {
                     0 => slab.start(None, &system)?,
                     kind => {
                         let steady = slab.start(Some("near-symmetric:0"), &system)?;
@@ -211,17 +236,31 @@ impl SystemPoints for TextPoints {
                 let [driving, stiffness, ..] = system.parameters() else {
                     unreachable!("interfaces have V_H and K");
                 };
-                let patience = PATIENCE * usual_patience(*driving, *stiffness);
-                let surface = Surface::stress(begin.len(), stress, Crossing::Downwards);
+                let (surface, patience) = match (system.phase(), system.forcing_period()) {
+                    (Some(phase), Some(period)) => {
+                        begin.push(0.0);
+                        let surface = Surface::stroboscopic(begin.len(), phase, 0.0);
+                        (surface, WAITED * period)
+                    }
+                    _ => (
+                        Surface::stress(begin.len(), stress, Crossing::Downwards),
+                        PATIENCE * usual_patience(*driving, *stiffness),
+                    ),
+                };
                 let section = SectionPlace::Known(surface, patience);
-                (Vector::from_vec(begin), section, slab.are_equal(&system))
+                let equal_parts = slab.are_equal(&system) && system.phase().is_none();
+                (Vector::from_vec(begin), section, equal_parts)
             }
             (None, None) => unreachable!("a system has a start"),
         };
         let system = units.inward_system(&system)?;
         Ok(SystemPoint {
             units,
-            enclosed: Some(Enclosure(Box::new(system.clone()))),
+            // Under a forcing nothing rests.
+            enclosed: match system.phase() {
+                None => Some(Enclosure(Box::new(system.clone()))),
+                Some(_) => None,
+            },
             field: AnyField::of_text(Cow::Owned(system))?,
             start: begin,
             section,

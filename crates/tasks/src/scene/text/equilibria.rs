@@ -70,6 +70,7 @@ impl TextEquilibriaPlan {
                 "`solver` is for built-in laws; steady states of a `system` or a `law` from a file are found in boxes".into(),
             ));
         }
+        model.may_rest()?;
         let place = match &options.within {
             Some(text) => SearchPlace::within(text, &model)?,
             None if options.start.is_none() && model.slab.is_some() => {

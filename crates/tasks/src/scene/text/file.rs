@@ -2,7 +2,7 @@
 
 use super::fingerprint::fingerprint;
 use super::grammar::{self, Item, Wrong, begins_name, continues_name};
-use super::lowering::lowered;
+use super::lowering::{lowered, lowered_by_phase};
 use crate::scene::file::Reader;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -20,6 +20,8 @@ const COLUMNS: [&str; 6] = ["time", "return", "period", "verdict", "residual", "
 
 /// What time is called in formulas, where nothing else is.
 pub(super) const TIME: &str = "t";
+/// What the phase of a periodic forcing is called, where it is a state.
+pub(in crate::scene) const PHASE: &str = "phase";
 
 pub(super) type Key<'a> = Spanned<Cow<'a, str>>;
 
@@ -36,6 +38,8 @@ pub struct SystemFile {
     pub fingerprint: String,
     /// Where a formula first names time, if one does.
     pub time: Option<TimeUse>,
+    /// Where the file has a period of what depends on time: the same with its phase as one state more, the last.
+    pub forced: Option<TextSystem>,
 }
 
 /// Where a formula names time.
@@ -103,18 +107,31 @@ pub(super) struct Tables<'a> {
     pub rates: Vec<Formula<'a>>,
     pub defined: Vec<Formula<'a>>,
     start: Vec<Option<f64>>,
+    /// The period of all that depends on time.
+    pub period: Option<Formula<'a>>,
     pub meanings: BTreeMap<&'a str, Meaning>,
 }
 
 impl<'a> Tables<'a> {
     fn of_system(reader: Reader<'a>, table: &'a DeTable<'_>) -> Result<Self> {
-        const KEYS: [&str; 6] = ["name", "states", "parameters", "rates", "where", "start"];
+        const KEYS: [&str; 7] = [
+            "name",
+            "states",
+            "parameters",
+            "period",
+            "rates",
+            "where",
+            "start",
+        ];
         let mut tables = Self::with_keys(reader, table, &KEYS)?;
         tables.read_name(table)?;
         tables.read_states(table)?;
         tables.read_parameters(table)?;
         tables.read_where(table)?;
         tables.read_rates(table)?;
+        if let Some((key, value)) = table.get_key_value("period") {
+            tables.period = Some(tables.formula(key, value)?);
+        }
         tables.start = vec![None; tables.states.len()];
         for (key, value) in tables.table(table, "start")? {
             let state = tables.state(key)?;
@@ -141,6 +158,7 @@ impl<'a> Tables<'a> {
             rates: Vec::new(),
             defined: Vec::new(),
             start: Vec::new(),
+            period: None,
             meanings: BTreeMap::new(),
             reader,
         })
@@ -359,6 +377,28 @@ impl<'a> Tables<'a> {
         }
     }
 
+    /// The system with the phase of its period as the last state, where the file has a period.
+    fn forced(&self) -> Result<Option<TextSystem>> {
+        let Some(period) = &self.period else {
+            return Ok(None);
+        };
+        let (rates, time) = lowered_by_phase(self, period)?;
+        let wrong = |what: String| Err(self.located(period, Wrong::new(0, what)));
+        if time.is_none() {
+            return wrong(format!(
+                "there is a period, but no formula names {TIME}, the time"
+            ));
+        }
+        if self.meanings.contains_key(PHASE) {
+            return wrong(format!(
+                "{PHASE} is the phase of the period, and nothing else can be called so"
+            ));
+        }
+        let states: Vec<&str> = self.states.iter().copied().chain([PHASE]).collect();
+        let system = TextSystem::new(rates, &states, &self.parameters)?;
+        Ok(Some(system.forced()))
+    }
+
     fn system(self, fingerprint: String) -> Result<SystemFile> {
         let (rates, time) = lowered(&self)?;
         let most = TextSystem::LARGEST - 1;
@@ -374,6 +414,7 @@ impl<'a> Tables<'a> {
             Some(_) => TextSystem::in_time(rates, &self.states, &self.parameters)?,
         };
         Ok(SystemFile {
+            forced: self.forced()?,
             system,
             name: self.name,
             start: self.start,

@@ -40,6 +40,8 @@ pub struct LawFile {
     pub inertia: Option<Inertia>,
     /// What varies in time.
     pub modulations: Vec<Modulation>,
+    /// Where the phase of what varies is a state in the place of time: where its period stands among the parameters.
+    pub forced_by: Option<usize>,
     /// The parameters and their values in the file.
     pub parameters: Vec<(String, f64)>,
     /// A number that tells its formulas from others.
@@ -83,6 +85,7 @@ impl LawFile {
             evolutions: vec![evolution],
             inertia: None,
             modulations: Vec::new(),
+            forced_by: None,
             fingerprint: fingerprint(table.get_ref()),
             damping: None,
         })

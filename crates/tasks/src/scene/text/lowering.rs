@@ -3,21 +3,44 @@
 use super::file::{Formula, Meaning, TIME, Tables, TimeUse};
 use super::grammar::{Token, Wrong};
 use twinslip::error::{Error, Result, did_you_mean};
-use twinslip::expression::{Builder, Expressions, Function, Place};
+use twinslip::expression::{Binary, Builder, Expressions, Function, Place};
 
 /// The operations of all rates; and where time is first named, if it is. It is then the variable after the states, and has the rate after theirs.
 pub(super) fn lowered(tables: &Tables<'_>) -> Result<(Expressions, Option<TimeUse>)> {
+    lowered_by(tables, None)
+}
+
+/// The same with a period of all that depends on time: in the place of time the variable after the states is then its phase, which goes from 0 to 1 in
+/// a period.
+pub(super) fn lowered_by_phase(
+    tables: &Tables<'_>,
+    period: &Formula<'_>,
+) -> Result<(Expressions, Option<TimeUse>)> {
+    lowered_by(tables, Some(period))
+}
+
+fn lowered_by(
+    tables: &Tables<'_>,
+    period: Option<&Formula<'_>>,
+) -> Result<(Expressions, Option<TimeUse>)> {
     let states: Vec<_> = (0..tables.states.len()).map(Some).collect();
-    let mut lowering = Lowering {
-        takes_time: true,
-        ..Lowering::of(tables, &states)
-    };
+    let mut lowering = Lowering::of(tables, &states);
+    if let Some(period) = period {
+        lowering.states = &[];
+        lowering.period = Some(lowering.place(period)?);
+        lowering.states = &states;
+    }
+    lowering.takes_time = true;
     lowering.check()?;
     let rates = tables.rates.iter();
     let rates: Result<Vec<Place>> = rates.map(|rate| lowering.place(rate)).collect();
     let mut rates = rates?;
     if lowering.time.is_some() {
-        rates.push(lowering.builder.number(1.0)?);
+        let one = lowering.builder.number(1.0)?;
+        rates.push(match lowering.period {
+            None => one,
+            Some(period) => lowering.builder.binary(Binary::Quotient, one, period)?,
+        });
     }
     Ok((lowering.builder.complete(rates), lowering.time))
 }
@@ -54,6 +77,8 @@ struct Lowering<'t, 'a> {
     /// Whether formulas may name time, and where one did first.
     takes_time: bool,
     time: Option<TimeUse>,
+    /// The period, where the variable after the states is a phase.
+    period: Option<Place>,
     builder: Builder,
     defined: Vec<Progress>,
 }
@@ -65,6 +90,7 @@ impl<'t, 'a> Lowering<'t, 'a> {
             states,
             takes_time: false,
             time: None,
+            period: None,
             builder: Builder::default(),
             defined: vec![Progress::Open; tables.defined.len()],
         }
@@ -122,9 +148,13 @@ impl<'t, 'a> Lowering<'t, 'a> {
 
     fn named(&mut self, formula: &Formula<'_>, at: usize, name: &str) -> Result<Place> {
         let made = match self.tables.meanings.get(name) {
-            Some(&Meaning::State(i)) => match self.states[i] {
-                Some(i) => self.builder.variable(i),
-                None => return Err(self.wrong(formula, at, self.out_of_place(name))),
+            Some(&Meaning::State(i)) => match self.states.get(i) {
+                Some(&Some(i)) => self.builder.variable(i),
+                None => {
+                    let what = format!("{name:?} is a state, on which a period cannot depend");
+                    return Err(self.wrong(formula, at, what));
+                }
+                Some(None) => return Err(self.wrong(formula, at, self.out_of_place(name))),
             },
             Some(&Meaning::Parameter(i)) => self.builder.parameter(i),
             Some(&Meaning::Defined(i)) if self.defined[i] == Progress::Begun => {
@@ -139,7 +169,13 @@ impl<'t, 'a> Lowering<'t, 'a> {
             None if name == TIME && self.takes_time => {
                 let place = || self.tables.time_use(formula, at);
                 self.time.get_or_insert_with(place);
-                self.builder.variable(self.states.len())
+                let last = self.builder.variable(self.states.len());
+                match (last, self.period) {
+                    (Ok(phase), Some(period)) => {
+                        self.builder.binary(Binary::Product, phase, period)
+                    }
+                    (last, _) => last,
+                }
             }
             None => return Err(self.wrong(formula, at, self.unknown(name))),
         };
@@ -160,7 +196,11 @@ impl<'t, 'a> Lowering<'t, 'a> {
             return format!("{name:?} is a function, whose argument must follow in parentheses");
         }
         if name == TIME {
-            return format!("{name:?} is time, on which a law cannot depend");
+            let what = match self.tables.period {
+                Some(_) => "a period",
+                None => "a law",
+            };
+            return format!("{name:?} is time, on which {what} cannot depend");
         }
         if name == "time" && self.takes_time {
             return format!("{name:?} is no state: in formulas time is called {TIME}");

@@ -21,6 +21,7 @@ mod slider;
 mod sliding;
 
 pub use equilibria::{SearchPlace, TextEquilibria, TextEquilibriaPlan, TextEquilibrium};
+pub(in crate::scene) use file::PHASE;
 pub use file::SystemFile;
 pub use friction::{Friction, Steady};
 pub(super) use law::curve_of_formulas;

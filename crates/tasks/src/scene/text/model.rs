@@ -17,6 +17,7 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use twinslip::error::{Error, Result, did_you_mean};
 use twinslip::field::Vector;
+use twinslip::friction::positive;
 use twinslip::integrate::AnyField;
 use twinslip::model::TextSystem;
 use twinslip::number::{Interval, Uncertain};
@@ -31,8 +32,6 @@ pub struct TextModel {
     pub system: TextSystem,
     /// The interfaces, where it is these.
     pub slab: Option<TextSlab>,
-    /// Where a formula names time, with what messages call the file, if one does.
-    time: Option<(String, TimeUse)>,
     start: Vec<Option<f64>>,
     units: Units,
     echo: Map<String, Value>,
@@ -45,7 +44,7 @@ impl TextModel {
     /// # Errors
     /// As [`TextModel::named`], and those of the options of interfaces.
     pub fn of(options: &ModelOptions, free: &[&str]) -> Result<Option<Self>> {
-        Self::autonomous(Self::in_time(options, free)?)
+        Self::with_time(options, free, TimeIs::Phase)
     }
 
     /// The same of an initial value problem, whose formulas may name time.
@@ -53,15 +52,21 @@ impl TextModel {
     /// # Errors
     /// As of [`TextModel::of`].
     pub fn in_time(options: &ModelOptions, free: &[&str]) -> Result<Option<Self>> {
+        Self::with_time(options, free, TimeIs::Time)
+    }
+
+    fn with_time(options: &ModelOptions, free: &[&str], time: TimeIs) -> Result<Option<Self>> {
         let law = match options.slab.law_file() {
             Some(path) => read_law(path)?,
-            None if options.slab.text.system.is_some() => return Self::read(&options.slab.text),
+            None if options.slab.text.system.is_some() => {
+                return Self::read(&options.slab.text, time);
+            }
             None if options.slab.has_clusters() || options.slab.needs_formulas(free)? => {
                 built_in_law(&options.slab.law)?
             }
             None => return Ok(None),
         };
-        let (slab, system) = TextSlab::new(law, options, free)?;
+        let (slab, system) = TextSlab::new(law, options, (free, time))?;
         let mut echo = slab.echo(&system, &options.slab);
         // The unit of what varies is any value of it.
         for name in free.iter().filter(|name| SCALES.contains(name)) {
@@ -70,7 +75,6 @@ impl TextModel {
         let missing = [("driving", slab.driving), ("stiffness", slab.stiffness)];
         let mut model = TextModel {
             echo,
-            time: None,
             start: Vec::new(),
             units: slab.units,
             slab: Some(slab),
@@ -93,34 +97,21 @@ impl TextModel {
     /// [`Error::File`] for a file that can't be read, [`Error::Input`] for what is wrong in it, by line and column, and where a formula
     /// names time, and [`Error::Parameter`] for a parameter that it does not have.
     pub fn named(options: &TextOptions) -> Result<Option<Self>> {
-        Self::autonomous(Self::read(options)?)
+        Self::read(options, TimeIs::Phase)
     }
 
-    /// This model, unless its formulas name time.
-    fn autonomous(model: Option<Self>) -> Result<Option<Self>> {
-        if model
-            .as_ref()
-            .is_some_and(|x| x.slab.is_some() && x.system.is_timed())
-        {
-            return Err(Error::Input(
-                "`modulate` varies a parameter in time, and only `integrate`, and solve_ivp in Python, take such interfaces".into(),
-            ));
-        }
-        let Some((file, TimeUse { formula, place })) = model.as_ref().and_then(|x| x.time.as_ref())
-        else {
-            return Ok(model);
-        };
-        let (line, column) = place;
-        Err(Error::Input(format!(
-            "{file}:{line}:{column}: {formula} names {TIME}, the time, and only `integrate`, and solve_ivp in Python, take such a system"
-        )))
-    }
-
-    fn read(options: &TextOptions) -> Result<Option<Self>> {
+    fn read(options: &TextOptions, time: TimeIs) -> Result<Option<Self>> {
         let Some(path) = &options.system else {
             return Ok(None);
         };
         let mut read = read(path)?;
+        if let (TimeIs::Phase, Some(named)) = (time, &read.time) {
+            let Some(forced) = read.forced.take() else {
+                return Err(no_period(&called(path), named));
+            };
+            read.system = forced;
+            read.start.push(Some(0.0));
+        }
         for (name, value) in assignments(&options.set)? {
             if read.system.parameter_names().is_empty() {
                 let what = format!("`set` {name}: the system {} has no parameters", read.name);
@@ -135,6 +126,9 @@ impl TextModel {
             }
             read.system.set(name, value)?;
         }
+        if read.system.phase().is_some() {
+            is_periodic(&read.system, &read.start)?;
+        }
         let names = read.system.parameter_names().iter();
         let parameters: Map<String, Value> = names
             .zip(read.system.parameters())
@@ -146,7 +140,6 @@ impl TextModel {
         echo.insert("states".into(), json!(read.system.states()));
         echo.insert("parameters".into(), Value::Object(parameters));
         Ok(Some(TextModel {
-            time: read.time.map(|time| (called(path), time)),
             system: read.system,
             slab: None,
             start: read.start,
@@ -269,6 +262,12 @@ impl TextModel {
         }
     }
 
+    /// The values of all states of interfaces: under a forcing its phase is 0.
+    pub(in crate::scene) fn at_phase_0(&self, mut start: Vec<f64>) -> Vector {
+        start.extend(self.system.phase().map(|_| 0.0));
+        Vector::from_vec(start)
+    }
+
     /// The values of all states: those of a text, or of the file where none is given. Of interfaces the text has tau and psi, as that of
     /// those that are built in, or says that they start near the symmetric steady state, as where none is given.
     ///
@@ -285,7 +284,7 @@ impl TextModel {
     /// As [`TextModel::start`].
     pub(in crate::scene) fn start_but(&self, text: Option<&str>, free: &[usize]) -> Result<Vector> {
         if let Some(slab) = &self.slab {
-            return Ok(Vector::from_vec(slab.start(text, &self.system)?));
+            return Ok(self.at_phase_0(slab.start(text, &self.system)?));
         }
         let states = self.system.states();
         let Some(text) = text else {
@@ -307,7 +306,11 @@ impl TextModel {
             })
         };
         let start: Result<Vec<f64>> = text.split(',').map(number).collect();
-        let start = start?;
+        let mut start = start?;
+        // The phase may be left out: it is 0.
+        if self.system.phase().is_some() && start.len() + 1 == states.len() {
+            start.push(0.0);
+        }
         if start.len() != states.len() {
             return Err(Error::Input(format!(
                 "`start` {text:?} must have {} values, one for each of {}",
@@ -316,6 +319,51 @@ impl TextModel {
             )));
         }
         Ok(Vector::from_vec(start))
+    }
+
+    /// That there may be equilibria: under a forcing nothing rests.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a system with a forcing.
+    pub(in crate::scene) fn may_rest(&self) -> Result<()> {
+        match self.system.phase() {
+            None => Ok(()),
+            Some(_) => Err(Error::Input(format!(
+                "{} is forced periodically, so it has no equilibria: look for its orbits (`orbit`, `branch orbits`) or its returns (`section`)",
+                self.name()
+            ))),
+        }
+    }
+
+    /// The period of orbits that are looked for, where that is known: so many of a periodic forcing, or what is guessed.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for periods of a forcing where there is none, and for a guess where there is; [`Error::Parameter`] for a guess that is not positive.
+    pub(in crate::scene) fn period(
+        &self,
+        turns: Option<usize>,
+        guess: Option<f64>,
+    ) -> Result<Option<f64>> {
+        let Some(forcing) = self.system.forcing_period() else {
+            if let Some(turns) = turns {
+                return Err(Error::Input(format!(
+                    "`turns` {turns} counts periods of a forcing, and nothing is forced here: give `modulate`, or a system whose formulas name {TIME}, with the key period"
+                )));
+            }
+            let guess = guess
+                .map(|period| positive("period-guess", period))
+                .transpose()?;
+            return Ok(guess.map(|period| self.units.inward(Quantity::Time, period)));
+        };
+        if guess.is_some() {
+            return Err(Error::Input(
+                "`period_guess`: orbits under a forcing last whole periods of it; say how many by `turns`".into(),
+            ));
+        }
+        match turns {
+            Some(0) => Err(Error::parameter("turns", 0, "at least 1")),
+            turns => Ok(Some(turns.unwrap_or(1) as f64 * forcing)),
+        }
     }
 
     /// A box with the steady states of interfaces: what stress and states have at rates from a small part of V_H to all of it.
@@ -345,6 +393,51 @@ impl Described for TextModel {
     fn units(&self) -> &Units {
         &self.units
     }
+}
+
+/// What formulas that name time have in its place: that variable, or the phase of its period as a state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum TimeIs {
+    Time,
+    Phase,
+}
+
+/// That a file names time, and no period of it.
+fn no_period(file: &str, TimeUse { formula, place }: &TimeUse) -> Error {
+    let (line, column) = place;
+    Error::Input(format!(
+        "{file}:{line}:{column}: {formula} names {TIME}, the time: only `integrate`, and solve_ivp in Python, take such a system, unless the file says of what period that is, as in period = \"2*pi/w\""
+    ))
+}
+
+/// That what depends on time has the period that is said.
+fn is_periodic(system: &TextSystem, start: &[Option<f64>]) -> Result<()> {
+    /// Phases that are looked at, and by how much rates a period apart may differ, of themselves.
+    const PHASES: [f64; 4] = [0.0, 0.137, 0.419, 0.781];
+    const SAME: f64 = 1e-8;
+    let period = system.forcing_period().unwrap_or(f64::NAN);
+    if !(period.is_finite() && period > 0.0) {
+        let must = "positive and finite";
+        return Err(Error::parameter("the period of the system", period, must));
+    }
+    let at = |phase: f64| {
+        let states = start[..start.len() - 1].iter();
+        let states = states.map(|x| x.filter(|x| *x != 0.0).unwrap_or(0.5));
+        system.rates(&states.chain([phase]).collect::<Vec<f64>>())
+    };
+    for phase in PHASES {
+        let pairs = at(phase).into_iter().zip(at(phase + 1.0));
+        for ((now, later), state) in pairs.zip(system.states()) {
+            // Outside its domain a formula says nothing.
+            if (now - later).abs() > SAME * (now.abs() + later.abs()) + f64::MIN_POSITIVE {
+                return Err(Error::Input(format!(
+                    "the period of the system, {period}, is none: the rate of {state} is {now} at {TIME} = {} and {later} a period later",
+                    phase * period
+                )));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// A finite number.

@@ -25,6 +25,13 @@ pub struct Modulation {
     first: usize,
 }
 
+/// By what the time is told of what varies: itself, or the phase of the forcing with its period.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Clock {
+    Time(Place),
+    Phase(Place, Place),
+}
+
 /// The factor of what varies, and its rate over itself.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Factor {
@@ -110,6 +117,11 @@ impl LawFile {
 }
 
 impl Modulation {
+    /// Where its period stands among the parameters of the law.
+    pub(super) fn period(&self) -> usize {
+        self.first + 1
+    }
+
     /// The factor at this time, by the parameters of an interface.
     ///
     /// # Errors
@@ -118,12 +130,15 @@ impl Modulation {
         &self,
         builder: &mut Builder,
         parameters: &[Place],
-        time: Place,
+        time: Clock,
     ) -> Result<Factor> {
-        let [eps, period, phase] = [0, 1, 2].map(|i| parameters[self.first + i]);
+        let [eps, own, phase] = [0, 1, 2].map(|i| parameters[self.first + i]);
+        let (turns, period) = match time {
+            Clock::Time(time) => (builder.binary(Binary::Quotient, time, own)?, own),
+            Clock::Phase(turns, period) => (turns, period),
+        };
         let (one, two, pi) = (builder.number(1.0)?, builder.number(2.0)?, builder.pi()?);
         let circle = builder.binary(Binary::Product, two, pi)?;
-        let turns = builder.binary(Binary::Quotient, time, period)?;
         let turns = builder.binary(Binary::Sum, turns, phase)?;
         let angle = builder.binary(Binary::Product, circle, turns)?;
         let cosine = builder.call(Function::Cos, &[angle])?;

@@ -44,7 +44,7 @@ pub(in crate::scene) fn orbit_start(
 ) -> Result<Vector> {
     match (&model.slab, given) {
         (Some(slab), None) if symmetry == Symmetry::Symmetric => {
-            Ok(Vector::from_vec(slab.alike(&model.system)?))
+            Ok(model.at_phase_0(slab.alike(&model.system)?))
         }
         _ => model.start(given),
     }

@@ -1,8 +1,9 @@
 //! Interfaces whose friction law is from a file, and what the options say about them.
 
+use super::file::PHASE;
 use super::friction::Friction;
 use super::law_file::{DRIVING, LawFile, STIFFNESS};
-use super::model::number;
+use super::model::{TimeIs, number};
 use super::slab_options::{Own, counts, damped, extended, parameters, unit_of_stress, units};
 use super::sliding::{Sliding, StateLayout};
 use crate::scene::options::{ModelOptions, SlabOptions};
@@ -43,7 +44,7 @@ impl TextSlab {
     pub(super) fn new(
         law: LawFile,
         options: &ModelOptions,
-        free: &[&str],
+        (free, time): (&[&str], TimeIs),
     ) -> Result<(Self, TextSystem)> {
         let counts = counts(&options.slab)?;
         let interfaces = counts.len();
@@ -106,7 +107,7 @@ impl TextSlab {
                 law.name
             )));
         }
-        let slab = TextSlab {
+        let mut slab = TextSlab {
             law,
             counts,
             places,
@@ -115,6 +116,9 @@ impl TextSlab {
             units,
         };
         let parameters: Vec<(&str, f64)> = names.iter().map(|(n, x)| (n.as_str(), *x)).collect();
+        if time == TimeIs::Phase {
+            slab.forced(&parameters)?;
+        }
         let system = slab.system(&parameters, false)?;
         Ok((slab, system))
     }
@@ -232,8 +236,35 @@ impl TextSlab {
         if ramp {
             states.push("driving".into());
         }
+        let forced = self.law.forced_by.is_some();
+        if forced {
+            states.push(PHASE.into());
+        }
         let states: Vec<&str> = states.iter().map(String::as_str).collect();
-        TextSystem::sliding((rates, slip_rates), &states, parameters)
+        let system = TextSystem::sliding((rates, slip_rates), &states, parameters)?;
+        Ok(match forced {
+            true => system.forced(),
+            false => system,
+        })
+    }
+
+    /// Takes the phase of what varies in time as a state in the place of time.
+    fn forced(&mut self, parameters: &[(&str, f64)]) -> Result<()> {
+        let periods = self.law.modulations.iter().flat_map(|one| {
+            let each = self.places.iter();
+            each.map(|places| parameters[places[one.period()]])
+        });
+        let mut periods: Vec<(&str, f64)> = periods.collect();
+        periods.dedup();
+        if let [(first, one), (second, other), ..] = periods[..]
+            && periods.iter().any(|(_, period)| *period != one)
+        {
+            return Err(Error::Input(format!(
+                "`modulate`: {first} is {one} and {second} {other}; all that varies must have one period, except in `integrate`"
+            )));
+        }
+        self.law.forced_by = self.law.modulations.first().map(|one| one.period());
+        Ok(())
     }
 
     /// The same equations on a ramp of V_H, which is then the last state.

@@ -1,7 +1,7 @@
 //! Interfaces under one stress by the formulas of their law: which variables they have, and the rates of these.
 
 use super::law_file::{DRIVING, Inertia, LawFile, STIFFNESS};
-use super::modulation::{Factor, NORMAL_STRESS, NORMAL_STRESS_COUPLING};
+use super::modulation::{Clock, Factor, NORMAL_STRESS, NORMAL_STRESS_COUPLING};
 use super::more_states::EVOLUTION_EFFECT;
 use crate::scene::units::Quantity;
 use twinslip::error::Result;
@@ -54,6 +54,7 @@ impl StateLayout {
     pub fn quantity(self, place: usize) -> Quantity {
         match place {
             0 => Quantity::Stress,
+            _ if place >= self.count() => Quantity::Number,
             _ if self.mass && place >= self.log_slip_rate(0) => Quantity::LogSlipRate,
             _ => Quantity::LogState,
         }
@@ -95,11 +96,15 @@ impl Sliding {
         let mut builder = Builder::default();
         let layout = law.layout(places.len());
         let tau = builder.variable(0)?;
-        // Behind the states there are V_H on a ramp, and time where it is named.
+        // Behind the states there are V_H on a ramp, and time or the phase where something varies.
         let behind = layout.count();
-        let time = match law.modulations.is_empty() {
-            true => None,
-            false => Some(builder.variable(behind + usize::from(ramp))?),
+        let time = match (law.modulations.is_empty(), law.forced_by) {
+            (true, _) => None,
+            (false, None) => Some(Clock::Time(builder.variable(behind + usize::from(ramp))?)),
+            (false, Some(period)) => {
+                let period = builder.parameter(places[0][period])?;
+                Some(Clock::Phase(builder.variable(behind)?, period))
+            }
         };
         let mut parts = Vec::with_capacity(places.len());
         for (i, places) in places.iter().enumerate() {
@@ -165,8 +170,12 @@ impl Sliding {
         if ramp {
             rates.push(first);
         }
-        if time.is_some() {
-            rates.push(builder.number(1.0)?);
+        if let Some(clock) = time {
+            let one = builder.number(1.0)?;
+            rates.push(match clock {
+                Clock::Time(_) => one,
+                Clock::Phase(_, period) => builder.binary(Binary::Quotient, one, period)?,
+            });
         }
         let slip_rates = parts.iter().map(|part| part.slip_rate).collect();
         let (rates, slip_rates) = builder.complete_both(rates, slip_rates);
