@@ -53,6 +53,7 @@ fn plane(i: usize, offset: f64) -> Surface {
         offset,
         direction: Crossing::Upwards,
         chart: SeriesVariables::Plain,
+        turn: None,
     }
 }
 

@@ -69,6 +69,7 @@ mod fit_printing;
 mod fit_recorded;
 mod fit_records;
 mod fit_steps;
+mod forced;
 mod friction;
 mod golden;
 mod growing_periods;

@@ -22,6 +22,7 @@ fn plane(normal: Vector, offset: f64) -> Surface {
         offset,
         direction: Crossing::Upwards,
         chart: SeriesVariables::Plain,
+        turn: None,
     }
 }
 

@@ -363,7 +363,7 @@ fn other_commands_refuse_time_in_one_sentence() {
         &[("x", "v", 1.0), ("v", "-x + push", 0.0)],
         "[parameters]\ng = 1\nw = 2\n[where]\npush = \"w*cos(w*t)\"\n",
     );
-    let sentence = ":13:17: push names t, the time, and only `integrate`, and solve_ivp in Python, take such a system";
+    let sentence = ":13:17: push names t, the time: only `integrate`, and solve_ivp in Python, take such a system, unless the file says of what period that is";
     for command in [
         "equilibria",
         "equilibria --box x=-1:1,v=-1:1",
@@ -380,7 +380,7 @@ fn other_commands_refuse_time_in_one_sentence() {
     ] {
         refused_in_one_line(&format!("{command} --system {path}"), sentence);
     }
-    refused_in_one_line("orbit --system duffing", "the rate of v names t, the time");
+    refused_in_one_line(&format!("orbit --system {path}"), "period = \"2*pi/w\"");
     // A law is the same at all times.
     let law = "slip_rate = \"sinh(tau)*psi*t\"\nevolution = \"1 - v*psi\"\n";
     let path = file("time-law", law);

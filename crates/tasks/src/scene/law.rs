@@ -124,6 +124,11 @@ impl LawPlan {
     /// # Errors
     /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
     pub fn new(options: &LawOptions) -> Result<Self> {
+        if !options.model.slab.modulate.is_empty() {
+            return Err(Error::Input(
+                "`modulate` varies a parameter in time, and a law is the same at all times".into(),
+            ));
+        }
         let laws = Laws::of(&options.model)?;
         let units = *laws.described().units();
         let measured = options.data.as_deref();
