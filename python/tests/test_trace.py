@@ -118,6 +118,22 @@ def test_a_function_gives_the_run_of_its_file(name: str, rows: Callable[..., Any
     np.testing.assert_allclose(ours, known, rtol=1e-13, atol=1e-13)
 
 
+def test_a_function_of_time_with_a_period_has_orbits(made: Callable[..., dict[str, Any]]) -> None:
+    of_file = shipped("duffing")
+    text = system_text(
+        duffing, of_file.states, of_file.parameters, start={"x": 1, "v": 0}, period="2*pi/omega"
+    )
+    asked = ("--set", "gamma=0.1", "--crosscheck", "none")
+    ours = made("orbit", "--system", text, *asked)["result"]["orbit"]
+    known = made("orbit", "--system", "duffing", *asked)["result"]["orbit"]
+    assert ours["turns"] == known["turns"] == 1
+    assert ours["period"]["value"] == pytest.approx(2 * np.pi, rel=1e-14)
+    np.testing.assert_allclose(ours["point"], known["point"], rtol=1e-12, atol=1e-13)
+    with pytest.raises(ValueError, match="does not take the time"):
+        autonomous = shipped("lorenz")
+        system_text(lorenz, autonomous.states, autonomous.parameters, period=1.0)
+
+
 @pytest.mark.parametrize("name", SHIPPED)
 def test_the_model_of_a_function_is_that_of_its_file(
     name: str, made: Callable[..., dict[str, Any]]

@@ -378,6 +378,7 @@ class Commands:
         symmetry: Text = None,
         start: Text = None,
         period_guess: Number = None,
+        turns: Count = None,
         points: Count = None,
         crosscheck: Union[bool, str, None] = None,
         method: Text = None,
@@ -402,6 +403,9 @@ class Commands:
             [default: its table start]
         period_guess : float or str, optional
             Approximate period; shorter cycles are then not accepted
+        turns : int, optional
+            With a periodic forcing (the key period of a file, or ``modulate``): the orbit lasts Q
+            of its periods [default: 1]
         points : int, optional
             Rows over one period, as in integrate: N equally spaced in time, from
             result.orbit.point back to it. A table or CSV then holds these rows, and JSON has them
@@ -529,6 +533,7 @@ class Commands:
         box: Text = None,
         start: Text = None,
         period_guess: Number = None,
+        turns: Count = None,
         step_limit: Number = None,
         max_points: Count = None,
         tolerance: Number = None,
@@ -570,6 +575,9 @@ class Commands:
             equilibria of a ``system`` begin near it [default: the file's table start]
         period_guess : float or str, optional
             With ``start`` of an orbit: its approximate period
+        turns : int, optional
+            With a periodic forcing (the key period of a ``system``, or ``modulate``): orbits last
+            Q of its periods [default: 1]
         step_limit : float or str, optional
             Factor on the limits of continuation steps: below 1 there are more points, above 1
             fewer [default: 1]
@@ -617,6 +625,7 @@ class Commands:
         box: Text = None,
         start: Text = None,
         period_guess: Number = None,
+        turns: Count = None,
         step_limit: Number = None,
         max_points: Count = None,
         tolerance: Number = None,
@@ -665,6 +674,9 @@ class Commands:
             equilibria of a ``system`` begin near it [default: the file's table start]
         period_guess : float or str, optional
             With ``start`` of an orbit: its approximate period
+        turns : int, optional
+            With a periodic forcing (the key period of a ``system``, or ``modulate``): orbits last
+            Q of its periods [default: 1]
         step_limit : float or str, optional
             Factor on the limits of continuation steps: below 1 there are more points, above 1
             fewer [default: 1]

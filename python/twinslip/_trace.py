@@ -85,6 +85,7 @@ def system_text(
     *,
     name: str | None = None,
     start: Mapping[str, float] | Sequence[float] | None = None,
+    period: str | float | None = None,
 ) -> str:
     """The text of the system dx/dt = f(x, p), or f(t, x, p), as a file of twinslip has it.
 
@@ -104,6 +105,8 @@ def system_text(
         What the system is called; by default as the function.
     start : sequence or mapping of float, optional
         Where runs start: the values of all states in their order, or of some by their names.
+    period : str or float, optional
+        The period of ``f(t, x, p)`` in t: a formula in the parameters, as "2*pi/omega", or a number.
 
     Returns
     -------
@@ -145,6 +148,8 @@ def system_text(
         ("start", [(key, number(value)) for key, value in starts.items()]),
     ]
     lines = [f"name = {quoted(called)}", f"states = [{', '.join(map(quoted, names))}]"]
+    if period is not None:
+        lines.append(f"period = {quoted(_checked_period(period, takes_time))}")
     for title, entries in tables:
         if entries:
             lines.append(f"[{title}]")
@@ -155,6 +160,16 @@ def system_text(
             f"f: its formulas are {len(text.encode())} bytes long, at most {LONGEST} are allowed"
         )
     return text
+
+
+def _checked_period(period: str | float, takes_time: bool) -> str:
+    if not takes_time:
+        raise ValueError("period: f does not take the time, so that it has none")
+    if isinstance(period, str):
+        return period
+    if not (isinstance(period, numbers.Real) and 0 < period < math.inf):
+        raise ValueError(f"period: {period!r} is no formula and no positive number")
+    return number(period)
 
 
 def _key(name: str) -> str:

@@ -75,6 +75,7 @@ class System(Commands, Model):
         *,
         start: Optional[Mapping[str, float]] = None,
         name: Optional[str] = None,
+        period: Union[str, float, None] = None,
     ) -> System:
         """A user-defined system from a Python function, which is called once, with symbols.
 
@@ -82,8 +83,8 @@ class System(Commands, Model):
         ----------
         function : callable
             ``function(x, p)`` returns the rates of all states in their order: x has the states, p the parameters, both by name, x by
-            number too. As ``function(t, x, p)`` it has the time t as well: such a system can be integrated, and has no equilibria,
-            orbits or branches. Arithmetic and functions of numpy make formulas of them; what the function does otherwise, such as ``if``, can't
+            number too. As ``function(t, x, p)`` it has the time t as well: such a system can be integrated, and with a ``period`` it has
+            orbits of whole periods, their branches and stroboscopic sections. Arithmetic and functions of numpy make formulas of them; what the function does otherwise, such as ``if``, can't
             depend on them.
         states : sequence of str
             The names of the states.
@@ -93,6 +94,8 @@ class System(Commands, Model):
             Where runs start if nothing else is said.
         name : str, optional
             What it is called; else as the function.
+        period : str or float, optional
+            The period in t: a formula in the parameters, as ``"2*pi/omega"``, or a number.
 
         Returns
         -------
@@ -109,7 +112,9 @@ class System(Commands, Model):
         from . import _trace
 
         return cls(
-            system=_trace.system_text(function, states, parameters or {}, start=start, name=name)
+            system=_trace.system_text(
+                function, states, parameters or {}, start=start, name=name, period=period
+            )
         )
 
     def replace(self, **changes: Any) -> System:

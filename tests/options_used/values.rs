@@ -16,14 +16,16 @@ pub enum Change {
 use Change::{Exempt, File, To, With};
 
 /// What is refused for every kind that is run here: of two commands that share their options what is of orbits alone, what a law has none of, and all
-/// clusters where all steady states are found; what varies in time where that is no variable. What varies is given to no run of these kinds.
+/// clusters where all steady states are found; what varies in time where nothing moves. What varies is given to no run of these kinds.
 pub const NEVER: [(&str, &str); 22] = [
     ("branch equilibria", "crosscheck"),
     ("branch equilibria", "doublings"),
     ("branch equilibria", "modulate"),
     ("branch equilibria", "normal-stress-coupling"),
     ("branch equilibria", "period-guess"),
+    ("branch equilibria", "turns"),
     ("branch orbits", "driving"),
+    ("branch orbits", "turns"),
     ("equilibria", "clusters"),
     ("equilibria", "modulate"),
     ("equilibria", "normal-stress-coupling"),
@@ -36,10 +38,8 @@ pub const NEVER: [(&str, &str); 22] = [
     ("locus hopf", "period-guess"),
     ("locus hopf", "stiffness"),
     ("locus hopf", "system"),
-    ("section", "modulate"),
-    ("section", "normal-stress-coupling"),
-    ("sweep", "modulate"),
-    ("sweep", "normal-stress-coupling"),
+    ("locus hopf", "turns"),
+    ("orbit", "turns"),
 ];
 
 /// To what an option is changed, so that something must come of it; `None` where nobody has thought of that.
@@ -238,6 +238,8 @@ pub fn change(command: &str, kind: Kind, option: &str) -> Option<Change> {
             _ => "210",
         }),
         "tolerance" => To("1e-15"),
+        // Nothing is forced here: tests/forced.rs.
+        "turns" => To("2"),
         "until" => To("2"),
         _ => return None,
     })

@@ -73,7 +73,7 @@ pub const REFUSED: [&str; 12] = [
 ];
 
 /// The largest numbers that are allowed of what is counted.
-const LARGEST: [(&str, f64); 9] = [
+const LARGEST: [(&str, f64); 10] = [
     ("doublings", 12.0),
     ("draws", 1000.0),
     ("interfaces", 1000.0),
@@ -83,6 +83,7 @@ const LARGEST: [(&str, f64); 9] = [
     ("returns", 200_000.0),
     ("skip", 1e7),
     ("starts", 1000.0),
+    ("turns", 1000.0),
 ];
 /// Options that are grids `[NAME=]A:B:N[log]`, in `sweep`.
 const GRIDS: [&str; 5] = ["driving", "grid", "state-1", "state-2", "stiffness"];

@@ -8,6 +8,7 @@ use super::locus::CurveChoice;
 use super::options::{ModelOptions, Names, OutputOptions, count, number};
 use super::orbit::SECOND_METHOD;
 use super::system::System;
+use super::text::not_forced;
 use std::path::PathBuf;
 use twinslip::bifurcation::MAX_POINTS;
 use twinslip::error::{Error, Result};
@@ -59,8 +60,11 @@ pub struct SearchOptions {
 
 impl SearchOptions {
     /// # Errors
-    /// [`Error::Input`] for a box, of what has all its equilibria found without one.
-    pub fn without_box(&self) -> Result<()> {
+    /// [`Error::Input`] for a box, of what has all its equilibria found without one, and for periods of a forcing, of what has none.
+    pub fn of_built_in(&self) -> Result<()> {
+        if let Some(turns) = self.turns {
+            return Err(not_forced(turns));
+        }
         match self.within {
             None => Ok(()),
             Some(_) => Err(Error::Input(
@@ -72,7 +76,7 @@ impl SearchOptions {
     /// # Errors
     /// [`Error::Input`] where a start or a box is given: all branches are found without one.
     pub fn unused(&self) -> Result<()> {
-        self.without_box()?;
+        self.of_built_in()?;
         match self.start {
             None => Ok(()),
             Some(_) => Err(Error::Input(
@@ -185,7 +189,7 @@ impl BranchOptions {
         let search = &self.search;
         Ok(Some(match self.of.as_deref() {
             Some("orbits") => {
-                search.without_box()?;
+                search.of_built_in()?;
                 subject.beginning(search.start.as_deref(), search.period_guess)?
             }
             _ => {
@@ -252,7 +256,7 @@ impl LocusOptions {
             search.unused()?;
             return Ok(Some(subject));
         }
-        search.without_box()?;
+        search.of_built_in()?;
         let subject = subject.beginning(search.start.as_deref(), search.period_guess)?;
         Ok(Some(subject))
     }

@@ -5,7 +5,7 @@ use super::super::equations::Subspace;
 use super::super::options::OrbitOptions;
 use super::super::plan::start;
 use super::super::system::System;
-use super::super::text::{orbit_start, symmetry as symmetry_of_start};
+use super::super::text::{not_forced, orbit_start, symmetry as symmetry_of_start};
 use super::super::units::Quantity;
 use std::sync::OnceLock;
 use twinslip::equilibrium::Symmetry;
@@ -54,11 +54,8 @@ impl Search {
                 logarithmic: OnceLock::new(),
             });
         }
-        if options.turns.is_some() {
-            return Err(Error::Input(
-                "`turns` counts periods of a forcing, and nothing is forced here: give `modulate`"
-                    .into(),
-            ));
+        if let Some(turns) = options.turns {
+            return Err(not_forced(turns));
         }
         let (system, loading) = system.closed_forms().expect("a system without formulas");
         let slab = InterfaceSystem {

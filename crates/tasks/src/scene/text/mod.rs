@@ -27,7 +27,7 @@ pub use friction::{Friction, Steady};
 pub(super) use law::curve_of_formulas;
 pub use law_file::LawFile;
 pub use model::TextModel;
-pub(super) use model::{given_text, law_text, system_text};
+pub(super) use model::{given_text, law_text, not_forced, system_text};
 pub(super) use modulation::NORMAL_STRESS_COUPLING;
 pub(super) use more_states::{MASS, SECOND_EVOLUTION_EFFECT, SECOND_SLIP_LENGTH};
 pub use options::TextOptions;

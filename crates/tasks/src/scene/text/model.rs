@@ -346,9 +346,7 @@ impl TextModel {
     ) -> Result<Option<f64>> {
         let Some(forcing) = self.system.forcing_period() else {
             if let Some(turns) = turns {
-                return Err(Error::Input(format!(
-                    "`turns` {turns} counts periods of a forcing, and nothing is forced here: give `modulate`, or a system whose formulas name {TIME}, with the key period"
-                )));
+                return Err(not_forced(turns));
             }
             let guess = guess
                 .map(|period| positive("period-guess", period))
@@ -400,6 +398,13 @@ impl Described for TextModel {
 pub(super) enum TimeIs {
     Time,
     Phase,
+}
+
+/// That periods of a forcing are counted where there is none.
+pub(in crate::scene) fn not_forced(turns: usize) -> Error {
+    Error::Input(format!(
+        "`turns` {turns} counts periods of a forcing, and nothing is forced here: give `modulate`, or a `system` whose formulas name {TIME}, with the key period"
+    ))
 }
 
 /// That a file names time, and no period of it.
