@@ -265,6 +265,14 @@ fn what_cannot_be_is_refused() {
         ("orbit --turns 0", "turns"),
         ("orbit --period-guess 5", "say how many by --turns"),
         ("orbit --turns 2", "shorter by a factor of 2"),
+        (
+            "orbit --set g=0.5",
+            "does not repeat after 5.235987755982989",
+        ),
+        (
+            "branch orbits --along g --from 0.2 --to 0.21 --turns 3",
+            "no orbit of so many periods",
+        ),
         ("section --surface x=0", "phase=VALUE"),
         ("section --surface phase=1.5", "below 1"),
         ("equilibria", "has no equilibria"),
@@ -284,6 +292,17 @@ fn what_cannot_be_is_refused() {
             ended.err
         );
     }
+    // On a torus nothing repeats.
+    let drifts = file(
+        &self::case("forced_vdp_quasiperiodic_w1.3"),
+        Some([2.0, 0.0]),
+    );
+    let ended = twinslip(&format!("orbit --system {drifts}"));
+    assert!(
+        ended.code == 1 && ended.err.contains("does not repeat after"),
+        "{}",
+        ended.err
+    );
     refused_in_one_line("orbit --system lorenz --turns 2", "nothing is forced here");
     let wrong = |text: &str, sentence: &str| {
         let text = text.replace('|', "\n");

@@ -393,8 +393,16 @@ impl<'a> Guesses<'a> {
         let tried = begins.iter().rev().take(TRIED - 1).chain([start]);
         for begin in tried {
             if self.closes_once(tracer, begin, period) {
-                break;
+                return Ok(());
             }
+        }
+        if matches!(self.otherwise, Some(Error::NotConverged { .. })) {
+            self.otherwise = Some(no_orbit(
+                format!(
+                    "the run from the start does not repeat after {period}, and Newton's method finds no orbit of that period near it"
+                ),
+                "use `section` to see what the run does, ask for other `turns`, or give a `start` near the orbit",
+            ));
         }
         Ok(())
     }

@@ -240,7 +240,7 @@ fn object(plan: &OrbitPlan, orbit: &Orbit) -> Value {
         "period": uncertain(Quantity::Time, orbit.period),
         "point": point,
         "point_uncertainty": orbit.point_uncertainty,
-        "extremes": extremes.into_iter().collect::<Map<String, Value>>(),
+        "extremes": extremes.into_iter().take(plan.system.moving()).collect::<Map<String, Value>>(),
         "multipliers": multipliers(orbit, plan.system.forcing_period().is_some()),
         "log_multipliers": logs,
         "trivial_defect": orbit.floquet.trivial_defect,

@@ -168,6 +168,12 @@ impl AnySystem {
         self.formulas().is_some_and(|model| model.system.is_timed())
     }
 
+    /// How many states there are without the phase of a forcing.
+    pub fn moving(&self) -> usize {
+        self.formulas()
+            .map_or(self.states().len(), |model| model.moving())
+    }
+
     /// The period of a forcing, where its phase is a state.
     pub fn forcing_period(&self) -> Option<f64> {
         let model = self.formulas()?;

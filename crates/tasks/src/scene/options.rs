@@ -105,8 +105,8 @@ pub struct SlabOptions {
     /// [default: 0, without inertia; m in kg/m^2 with --si]
     #[arg(long, value_name = "m", value_parser = number, allow_negative_numbers = true)]
     pub mass: Option<f64>,
-    /// Let driving or normal_stress vary, as its value times 1 + EPS cos(2 pi (t/PERIOD + PHASE)); repeatable. For integrate, and for solve_ivp
-    /// in Python
+    /// Let driving or normal_stress vary, as its value times 1 + EPS cos(2 pi (t/PERIOD + PHASE)); repeatable. For integrate, orbit, section,
+    /// sweep, and branch and locus of orbits
     #[arg(
         long,
         value_name = "NAME=EPS:PERIOD[:PHASE]",

@@ -94,7 +94,8 @@ pub fn known(slip_rate: f64) -> Option<f64> {
 
 /// The least and the largest value of each state, from one on.
 fn extremes(system: &AnySystem, from: usize) -> Vec<Column<Orbit>> {
-    let states = system.states().into_iter().enumerate().skip(from);
+    let states = system.states().into_iter().take(system.moving());
+    let states = states.enumerate().skip(from);
     let both = states.flat_map(|(i, name)| {
         let quantity = system.quantity(i);
         ["min", "max"]

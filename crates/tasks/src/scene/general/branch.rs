@@ -239,6 +239,11 @@ impl<'s> GeneralBranchPlan<'s> {
         }
         match failed {
             Some(error) => Err(error),
+            None if met == 0 && known.is_empty() && !self.subject.may_rest() => Err(Error::NoOrbit {
+                what: "no orbit of so many periods of the forcing was found at the ends of the range".into(),
+                period: None,
+                hint: "give a `start` near an orbit, other `turns`, or another range",
+            }),
             None if met == 0 && known.is_empty() => Err(nothing(self.kind.orbits)),
             None => Ok(()),
         }

@@ -297,6 +297,7 @@ impl Subject for TextSubject {
         let quantity = |place| self.model.quantity(place);
         match kind.orbits {
             true => states
+                .take(self.model.moving())
                 .flat_map(|(place, name)| {
                     ["min", "max"].map(|end| (format!("{name}_{end}"), quantity(place)))
                 })
@@ -315,6 +316,7 @@ impl Subject for TextSubject {
             GeneralSolution::Orbit { shooting, .. } => {
                 let ranges = ranges(&family.field(point.at), shooting)?;
                 let ranges = ranges.into_iter().zip(&self.units.sizes);
+                let ranges = ranges.take(self.model.moving());
                 Ok(ranges
                     .flat_map(|((a, b), size)| [a * size, b * size])
                     .collect())

@@ -113,7 +113,9 @@ impl OrbitPlan {
         let Some(model) = self.system.formulas() else {
             return Ok(());
         };
-        if let Some(layout) = self.system.layout().filter(|all| all.has_more()) {
+        let is_forced = self.system.forcing_period().is_some();
+        let layout = self.system.layout();
+        if let Some(layout) = layout.filter(|all| all.has_more() || is_forced) {
             let states = (0..layout.parts).map(|part| layout.log_state(0, part));
             let least = states.map(|place| orbit.extremes[place][0].value);
             orbit.state_min = least.fold(f64::INFINITY, f64::min).exp();

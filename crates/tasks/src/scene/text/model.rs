@@ -321,6 +321,11 @@ impl TextModel {
         Ok(Vector::from_vec(start))
     }
 
+    /// How many states there are without the phase of a forcing, which is the last and goes round and round.
+    pub(in crate::scene) fn moving(&self) -> usize {
+        self.system.states().len() - usize::from(self.system.phase().is_some())
+    }
+
     /// That there may be equilibria: under a forcing nothing rests.
     ///
     /// # Errors
