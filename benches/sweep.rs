@@ -26,6 +26,7 @@ fn map(n: usize, driving: (f64, f64), stiffness: (f64, f64)) -> SweepSettings {
         follow: false,
         rtol: 1e-9,
         lyapunov: false,
+        diagram: None,
         max_returns: 2000,
         max_steps: 10_000_000,
     }

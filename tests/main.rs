@@ -33,6 +33,7 @@ mod damping;
 mod damping_derivatives;
 mod derivatives;
 mod description;
+mod diagrams;
 mod difference_chart;
 mod dimensions;
 mod double_double;

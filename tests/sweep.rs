@@ -28,6 +28,7 @@ fn settings(driving: &str, stiffness: &str, starts: usize) -> SweepSettings {
         follow: false,
         rtol: 1e-9,
         lyapunov: false,
+        diagram: None,
         max_returns: 2000,
         max_steps: 10_000_000,
     }

@@ -41,6 +41,8 @@ pub(super) struct Classifier {
 pub(super) struct Settled {
     pub row: SweepRow,
     pub attractor: Option<Vector>,
+    /// The state where it rests.
+    pub rest: Option<Vector>,
 }
 
 impl Settled {
@@ -323,6 +325,7 @@ pub(super) fn begun(run: &SweepRun, regime: Regime) -> Settled {
             ..run.row.clone()
         },
         attractor: run.recorder.returns.last().map(|at| at.state.clone()),
+        rest: None,
     }
 }
 
@@ -331,6 +334,7 @@ pub(super) fn steady(run: &SweepRun, equilibrium: &Vector) -> Settled {
     let last = equilibrium.len() - 1;
     let value = equilibrium[run.variable];
     told.row.range = Some((value, value));
+    told.rest = Some(equilibrium.clone());
     told.row.lyapunov_max = Some(at_equilibrium(&run.field, equilibrium)[0]);
     // From the state itself the next run would come to rest where that is unstable.
     told.attractor = Some(match run.equal_parts {

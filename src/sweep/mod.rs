@@ -11,6 +11,7 @@ mod aperiodic;
 mod attraction;
 mod classify;
 mod closing;
+mod diagram;
 mod finite_difference_exponent;
 mod flows;
 mod orbit;
@@ -146,6 +147,8 @@ pub struct SweepSettings {
     pub rtol: f64,
     /// Whether the largest exponent is wanted where the verdict needs none.
     pub lyapunov: bool,
+    /// The variable whose values on the attractors are wanted.
+    pub diagram: Option<usize>,
     /// The most returns of a run.
     pub max_returns: usize,
     /// The most steps of a run.
@@ -269,6 +272,9 @@ pub struct SweepRow {
     pub returns: usize,
     /// Why it is undecided, and other remarks.
     pub note: Option<String>,
+    /// What a variable comes back to on the attractor, where that is wanted ([`SweepSettings::diagram`]): its local maxima, or its values at one
+    /// phase of a forcing.
+    pub dots: Vec<f64>,
 }
 
 impl SweepRow {
@@ -286,6 +292,7 @@ impl SweepRow {
             lyapunov_max: None,
             returns: 0,
             note: None,
+            dots: Vec::new(),
         }
     }
 }

@@ -29,6 +29,7 @@ use std::rc::Rc;
 ///     follow: false,
 ///     rtol: 1e-9,
 ///     lyapunov: false,
+///     diagram: None,
 ///     max_returns: 2000,
 ///     max_steps: 10_000_000,
 /// };
@@ -109,6 +110,7 @@ impl Sweeper {
             Box::new(Settled {
                 row: missing(settings, number, error.to_string()),
                 attractor: None,
+                rest: None,
             })
         })?;
         if let Some(before) = before {
@@ -152,7 +154,10 @@ impl Sweeper {
                     Some(error) => Some(undecided(run, run.in_words(error))),
                     None => self.0.classify(run),
                 };
-                let settled = settled.map(|settled| settled.outward(run));
+                let settled = settled.map(|mut settled| {
+                    settled.row.dots = self.0.dots(run, &settled);
+                    settled.outward(run)
+                });
                 let goes_on = settled.is_none();
                 told[*place] = settled;
                 goes_on

@@ -25,6 +25,7 @@ fn no_step_allocates() {
         follow: false,
         rtol: 1e-9,
         lyapunov: false,
+        diagram: None,
         max_returns: 4000,
         max_steps: 10_000_000,
     };

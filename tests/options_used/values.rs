@@ -158,6 +158,7 @@ pub fn change(command: &str, kind: Kind, option: &str) -> Option<Change> {
             _ if command == "branch orbits" => orbit_at(kind),
             _ => "187",
         }),
+        "diagram" => To(if system { "x" } else { "stress" }),
         "grid" if system => To("a=1:1.1:2"),
         "grid" => To("healing_time=90:110:2"),
         "in" if system => To("s,r"),

@@ -23,7 +23,7 @@ pub const COMMANDS: [&str; 8] = [
 ];
 
 /// Options of text that name no file, whatever the text.
-const TEXTS: [&str; 25] = [
+const TEXTS: [&str; 26] = [
     "along",
     "at",
     "at-driving",
@@ -33,6 +33,7 @@ const TEXTS: [&str; 25] = [
     "columns",
     "crosscheck",
     "curves",
+    "diagram",
     "draw",
     "driving",
     "driving-range",

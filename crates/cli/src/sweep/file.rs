@@ -10,7 +10,7 @@ use twinslip::error::{Error, Result};
 use twinslip::sweep::SweepRow;
 use twinslip_output::{Head, ROW_CHECK, Status, checked_cells, checked_line, damage, shortest};
 use twinslip_tasks::scene::{Column, Described, Quantity, Shard, SweepPlan};
-use twinslip_tasks::views;
+use twinslip_tasks::views::{self, Dot};
 
 /// What the remark on a part begins with.
 const SHARD: &str = "shard: ";
@@ -25,10 +25,10 @@ pub fn remarks(plan: &SweepPlan, shard: Option<Shard>) -> Vec<String> {
 }
 
 /// What the rows begin with: remarks and names of columns. In a file a remark says how far it is.
-pub fn beginning(
+pub fn beginning<R>(
     plan: &SweepPlan,
     shard: Option<Shard>,
-    columns: &[Column<SweepRow>],
+    columns: &[Column<R>],
     status: Option<Status>,
 ) -> Vec<u8> {
     let names = views::names(columns, false);
@@ -46,6 +46,17 @@ pub fn lines(plan: &SweepPlan, columns: &[Column<SweepRow>], rows: &[SweepRow]) 
         checked_line(&row.number.to_string(), &cells)
     };
     rows.iter().map(line).collect::<String>().into_bytes()
+}
+
+/// The rows of a diagram as lines, checked by the numbers of their points.
+pub fn dot_lines(plan: &SweepPlan, columns: &[Column<Dot>], rows: &[SweepRow]) -> Vec<u8> {
+    let each = rows.iter().flat_map(|row| {
+        views::dots(row, plan.settings.starts).map(|dot| {
+            let cells = views::cells(columns, &dot, plan.system.units(), false);
+            checked_line(&row.number.to_string(), &cells)
+        })
+    });
+    each.collect::<String>().into_bytes()
 }
 
 /// How far a file has come.

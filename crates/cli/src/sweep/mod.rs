@@ -106,9 +106,15 @@ fn write(plan: &SweepPlan, report: &Report<'_>, out: &SweepOut<'_>) -> Result<En
     let units = plan.system.units();
     // Those that were handed on need not be there twice.
     let rows = out.rows.iter().filter(|_| report.repeats());
-    let rows: Vec<Value> = rows
-        .map(|row| Value::Object(views::object(out.columns, row, units)))
-        .collect();
+    let rows: Vec<Value> = match &out.of_dots {
+        Some(columns) => rows
+            .flat_map(|row| views::dots(row, plan.settings.starts))
+            .map(|dot| Value::Object(views::object(columns, &dot, units)))
+            .collect(),
+        None => rows
+            .map(|row| Value::Object(views::object(out.columns, row, units)))
+            .collect(),
+    };
     let regimes: serde_json::Map<String, Value> = out
         .regimes()
         .map(|(name, count)| (name.to_owned(), json!(count)))

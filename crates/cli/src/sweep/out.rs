@@ -13,13 +13,15 @@ use twinslip::section::Regime;
 use twinslip::sweep::SweepRow;
 use twinslip_output::{Format, RowWriter, Status};
 use twinslip_tasks::scene::{Column, Described, SweepPlan};
-use twinslip_tasks::views::{self, REGIMES};
+use twinslip_tasks::views::{self, Dot, REGIMES};
 
 /// Takes rows in their order: writes, counts and, where they are needed once more, keeps them.
 pub struct SweepOut<'a> {
     plan: &'a SweepPlan,
     report: &'a Report<'a>,
     pub columns: &'a [Column<SweepRow>],
+    /// Of the rows of a diagram, which then are in the place of those.
+    pub of_dots: Option<Vec<Column<Dot>>>,
     to: SweepSink,
     /// Where the rows of an earlier run end.
     torn: u64,
@@ -55,6 +57,10 @@ impl<'a> SweepOut<'a> {
             plan,
             report,
             columns,
+            of_dots: plan
+                .diagram
+                .as_ref()
+                .map(|diagram| views::diagram_columns(&plan.layout, diagram, plan.settings.starts)),
             to: SweepSink::Nothing,
             torn: 0,
             keeps: drawn || report.repeats(),
@@ -99,7 +105,11 @@ impl<'a> SweepOut<'a> {
         self.to = match report.format {
             Format::Json if !report.streams() => SweepSink::Nothing,
             Format::Table | Format::Json => {
-                let names = views::names(self.columns, report.format == Format::Table);
+                let in_table = report.format == Format::Table;
+                let names = match &self.of_dots {
+                    Some(columns) => views::names(columns, in_table),
+                    None => views::names(self.columns, in_table),
+                };
                 let (names, quantities): (Vec<_>, Vec<_>) = names.into_iter().unzip();
                 let units = unit_names(self.plan.system.units(), quantities.into_iter());
                 let remarks = file::remarks(self.plan, self.plan.shard);
@@ -109,7 +119,10 @@ impl<'a> SweepOut<'a> {
             Format::Csv => {
                 let mut to = report.stream(0)?;
                 let status = report.file.as_ref().map(|_| Status::Unfinished);
-                let beginning = file::beginning(self.plan, self.plan.shard, self.columns, status);
+                let beginning = match &self.of_dots {
+                    Some(columns) => file::beginning(self.plan, None, columns, status),
+                    None => file::beginning(self.plan, self.plan.shard, self.columns, status),
+                };
                 to.write_all(&beginning)?;
                 to.flush()?;
                 SweepSink::Lines(to)
@@ -158,13 +171,20 @@ impl<'a> SweepOut<'a> {
         match &mut self.to {
             SweepSink::Nothing => Ok(()),
             SweepSink::Lines(to) => {
-                to.write_all(&file::lines(self.plan, self.columns, rows))?;
+                to.write_all(&match &self.of_dots {
+                    Some(columns) => file::dot_lines(self.plan, columns, rows),
+                    None => file::lines(self.plan, self.columns, rows),
+                })?;
                 to.flush()
             }
-            SweepSink::Table(writer) => rows.iter().try_for_each(|row| {
+            SweepSink::Table(writer) => {
                 let units = self.plan.system.units();
-                writer.row(&views::cells(self.columns, row, units, table))
-            }),
+                rows.iter().try_for_each(|row| match &self.of_dots {
+                    Some(columns) => views::dots(row, self.plan.settings.starts)
+                        .try_for_each(|dot| writer.row(&views::cells(columns, &dot, units, table))),
+                    None => writer.row(&views::cells(self.columns, row, units, table)),
+                })
+            }
         }
     }
 

@@ -16,6 +16,9 @@ pub fn draw(plan: &SweepPlan, report: &Report<'_>, rows: &[SweepRow], path: &Pat
         report.say("there is no point to draw");
         return Ok(());
     }
+    if plan.diagram.is_some() {
+        return report.draw(path, &dots(plan, rows));
+    }
     let outcomes: Vec<PointOutcome> = rows.iter().map(views::outcome).collect();
     let units = plan.system.units();
     let side = |range: &Range| GridSide {
@@ -81,6 +84,39 @@ pub fn draw(plan: &SweepPlan, report: &Report<'_>, rows: &[SweepRow], path: &Pat
         }
     };
     report.draw(path, &drawing)
+}
+
+/// The values that a state comes back to along the parameter that varies.
+fn dots(plan: &SweepPlan, rows: &[SweepRow]) -> Drawing {
+    let units = plan.system.units();
+    let ranges = plan.settings.grid.ranges();
+    let of = ranges.iter().position(|range| range.count > 1).unwrap_or(0);
+    let of_plane = ["V_H", "K"].map(str::to_owned);
+    let quantities = [Quantity::SlipRate, Quantity::Stiffness];
+    let (label, values) = match &plan.settings.grid {
+        Grid::Systems { axes, .. } => (plan.axis_labels()[of].clone(), axes[of].values().collect()),
+        _ => (
+            views::axis_label(&of_plane[of], quantities[of], units),
+            ranges[of]
+                .values()
+                .map(|x| units.outward(quantities[of], x))
+                .collect(),
+        ),
+    };
+    let side = GridSide {
+        values,
+        log: ranges[of].log,
+    };
+    let title = match &plan.system {
+        Swept::Text(model) if model.slab.is_none() => {
+            let varies = |name: &str| plan.layout.parameters.iter().any(|(own, _)| own == name);
+            views::with_fixed_parameters(model, varies)
+        }
+        _ => String::new(),
+    };
+    let diagram = plan.diagram.as_ref().expect("a diagram is asked for");
+    let starts = plan.settings.starts;
+    views::diagram_picture(rows, (&side, label), starts, (diagram, title), units)
 }
 
 /// What runs go through along one parameter.

@@ -10,7 +10,7 @@ pub fn pack(rows: &[SweepRow]) -> Vec<u8> {
     let mut to = Vec::new();
     for row in rows {
         count(&mut to, row.number);
-        for list in [&row.parameters, &row.start] {
+        for list in [&row.parameters, &row.start, &row.dots] {
             count(&mut to, list.len());
             numbers(&mut to, list);
         }
@@ -74,6 +74,7 @@ impl From<'_> {
             number,
             parameters: self.list()?,
             start: self.list()?,
+            dots: self.list()?,
             regime: *REGIMES.get(self.count()?)?,
             symmetry: match self.count()? {
                 0 => None,

@@ -35,7 +35,13 @@ pub fn series_colour(series: &PlotSeries, number: usize) -> Colour {
 
 /// How broad the line of a series is, or the radius of its points.
 pub fn line_width(panel: &Panel, number: usize) -> f64 {
+    /// So many points are a crowd, of which each is small.
+    const CROWD: usize = 3000;
+    const CROWDED: f64 = 0.6;
     let series = &panel.series[number];
+    if series.dots && series.x.len() > CROWD {
+        return CROWDED;
+    }
     if panel.series.iter().any(|series| series.wide) {
         return if series.wide { WIDE } else { NARROW };
     }

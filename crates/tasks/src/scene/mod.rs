@@ -117,7 +117,7 @@ pub use section::{
 };
 pub use shipped::{about, shipped, shipped_laws, shipped_names, shipped_systems};
 pub use summary::{Criticality, FaultSummary, Spread};
-pub use sweep::{BasinStates, Moving, Shard, SweepLayout, SweepOptions, SweepPlan, Swept};
+pub use sweep::{BasinStates, Diagram, Moving, Shard, SweepLayout, SweepOptions, SweepPlan, Swept};
 pub use system::{Described, System};
 pub use text::{
     Friction, LawFile, SearchPlace, Steady, SystemFile, TextEquilibria, TextEquilibriaPlan,

@@ -49,16 +49,16 @@ pub use many::many_run;
 pub use many_equilibria::steady_interface_columns;
 pub use map::{picture_of_section, return_map, states_at_returns};
 pub use orbit::{known, orbit_columns};
-pub use points::{REGIMES, outcome, sweep_columns, sweep_row};
+pub use points::{Dot, REGIMES, diagram_columns, dots, outcome, sweep_columns, sweep_row};
 pub use run::{event_columns, panels_in_time, phase_plane, picture_of_run};
 pub use steady_picture::{
     picture_of_equilibria, picture_of_many_equilibrium, picture_of_text_equilibria,
 };
 pub use sweep::{
-    Basins, GridSide, PointOutcome, basin_map, basins_of_states, parameter_map, regime_line,
-    regime_map,
+    Basins, GridSide, PointOutcome, basin_map, basins_of_states, diagram_picture, parameter_map,
+    regime_line, regime_map,
 };
-pub use text::{text_equilibria_columns, with_parameters};
+pub use text::{text_equilibria_columns, with_fixed_parameters, with_parameters};
 
 /// The names as written, error budgets in columns of their own but in tables.
 pub fn names<R>(columns: &[Column<R>], table: bool) -> Vec<(String, Quantity)> {

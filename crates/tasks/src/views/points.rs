@@ -1,7 +1,7 @@
 //! What the rows of a sweep show, and how they are read again.
 
 use super::PointOutcome;
-use crate::scene::{CellValue, Column, Moving, Quantity, SweepLayout, Units};
+use crate::scene::{CellValue, Column, Diagram, Moving, Quantity, SweepLayout, Units};
 use twinslip::equilibrium::Symmetry;
 use twinslip::number::Uncertain;
 use twinslip::section::Regime;
@@ -15,6 +15,57 @@ pub const REGIMES: [Regime; 5] = [
     Regime::Chaotic,
     Regime::Undecided,
 ];
+
+/// A value that a state comes back to on an attractor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Dot {
+    /// The parameters that vary.
+    pub parameters: Vec<f64>,
+    /// The number of the start, from 1.
+    pub start: usize,
+    /// Its number on the attractor, from 1.
+    pub n: usize,
+    /// The value.
+    pub value: f64,
+    /// What the attractor is.
+    pub regime: Regime,
+}
+
+/// The values of a point of a diagram, of a sweep of so many starts.
+pub fn dots(row: &SweepRow, starts: usize) -> impl Iterator<Item = Dot> + '_ {
+    let each = row.dots.iter().zip(1..);
+    each.map(move |(&value, n)| Dot {
+        parameters: row.parameters.clone(),
+        start: row.number % starts + 1,
+        n,
+        value,
+        regime: row.regime,
+    })
+}
+
+/// The columns of a diagram.
+pub fn diagram_columns(layout: &SweepLayout, diagram: &Diagram, starts: usize) -> Vec<Column<Dot>> {
+    use Quantity::Number;
+    let parameters = layout.parameters.iter().enumerate();
+    let mut columns: Vec<Column<Dot>> = parameters
+        .map(|(i, (name, quantity))| {
+            Column::new(name.clone(), *quantity, move |dot: &Dot| {
+                dot.parameters[i].into()
+            })
+        })
+        .collect();
+    if starts > 1 {
+        columns.push(Column::new("start", Number, |dot: &Dot| dot.start.into()));
+    }
+    columns.extend([
+        Column::new("n", Number, |dot: &Dot| dot.n.into()),
+        Column::new(diagram.name.clone(), diagram.quantity, |dot: &Dot| {
+            dot.value.into()
+        }),
+        Column::new("regime", Number, |dot: &Dot| dot.regime.name().into()),
+    ]);
+    columns
+}
 
 /// The columns of the points of a sweep. A row's start is one that `integrate --start` takes.
 pub fn sweep_columns(layout: &SweepLayout) -> Vec<Column<SweepRow>> {
@@ -143,6 +194,7 @@ pub fn sweep_row<'a>(
         .collect();
     let per_period = text("period_of_orbit").or(text("returns_per_period"));
     Some(SweepRow {
+        dots: Vec::new(),
         number,
         parameters: parameters.collect::<Option<_>>()?,
         // Where there is no start all of it is missing.

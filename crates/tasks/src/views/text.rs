@@ -57,13 +57,19 @@ pub fn text_equilibria_columns(model: &TextModel) -> Vec<Column<TextEquilibrium>
 
 /// The name of a system with the values of its parameters.
 pub fn with_parameters(model: &TextModel) -> String {
+    with_fixed_parameters(model, |_| false)
+}
+
+/// The same without the parameters that vary.
+pub fn with_fixed_parameters(model: &TextModel, varies: impl Fn(&str) -> bool) -> String {
     let system = &model.system;
     let quantity = |name: &str| match model.slab {
         Some(_) => Quantity::of_parameter(name),
         None => Number,
     };
     let all = system.parameter_names().iter().zip(system.parameters());
-    let all: Vec<_> = all.map(|(name, x)| (*name, quantity(name), *x)).collect();
+    let fixed = all.filter(|(name, _)| !varies(name));
+    let all: Vec<_> = fixed.map(|(name, x)| (*name, quantity(name), *x)).collect();
     titled(Some(model.name()), &all, model.units())
 }
 

@@ -2,6 +2,7 @@
 
 mod axes;
 mod basin;
+mod diagram;
 mod explain;
 mod grain;
 mod interfaces;
@@ -12,6 +13,7 @@ mod text;
 mod words;
 
 pub use basin::BasinStates;
+pub use diagram::Diagram;
 pub use layout::{Moving, SweepLayout};
 pub use options::SweepOptions;
 pub use shard::Shard;
@@ -52,6 +54,8 @@ pub struct SweepPlan {
     pub curves: Vec<LocusPlan>,
     /// The states that vary where the grid is of starts of another system than two equal interfaces.
     pub basin: Option<BasinStates>,
+    /// Of what a diagram is asked for, in the place of regimes.
+    pub diagram: Option<Diagram>,
     /// The settings for the output.
     pub numerics: Value,
     /// The command line of the whole sweep in one order, without what changes no row: equal sweeps have equal ones.
@@ -115,7 +119,9 @@ impl SweepPlan {
             states,
             basin,
         } = swept(options)?;
+        let diagram = Diagram::of(options, &system)?;
         let settings = SweepSettings {
+            diagram: diagram.as_ref().map(|diagram| diagram.place),
             grid,
             starts: options.starts,
             seed: options.seed,
@@ -133,6 +139,20 @@ impl SweepPlan {
                 return Err(Error::Input(
                     "`plot` needs one or two free parameters, and here there is none; leave it out, or vary a parameter".into(),
                 ));
+            }
+            (Some(_), _) if diagram.is_some() => {
+                let varying = settings
+                    .grid
+                    .ranges()
+                    .into_iter()
+                    .filter(|range| range.count > 1);
+                if varying.count() != 1 {
+                    return Err(Error::Input(
+                        "`plot` of a `diagram` is over one parameter: vary one, or leave it out"
+                            .into(),
+                    ));
+                }
+                no_curves(options)?
             }
             (Some(_), Swept::Interfaces(system)) => {
                 curves(options, system, (&settings.grid, &axes.names))?
@@ -153,6 +173,7 @@ impl SweepPlan {
             drawn: options.plot.is_some(),
             axes,
             basin,
+            diagram,
         })
     }
 

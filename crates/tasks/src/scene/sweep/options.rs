@@ -94,6 +94,10 @@ pub struct SweepOptions {
     /// Start each point on the attractor found at the previous one along the first parameter: shorter transients, and hysteresis is visible
     #[arg(long, help_heading = "Grid")]
     pub follow: bool,
+    /// Instead of regimes the values that this state comes back to on each attractor, a row each: its local maxima, or under a periodic forcing
+    /// its values at the phase 0 (of --surface phase=VALUE with --system). One period of what is periodic, 200 values of what is not
+    #[arg(long, value_name = "STATE", help_heading = "Grid")]
+    pub diagram: Option<String>,
     /// Draw the map of regimes, or with one free parameter the returns along it, as FILE.svg or FILE.png
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub plot: Option<PathBuf>,

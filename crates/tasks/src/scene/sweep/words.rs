@@ -30,6 +30,7 @@ pub(super) fn numerics(options: &SweepOptions, grid: &[(&str, String)]) -> Value
         ("seed", json!(options.seed)),
         ("follow", json!(options.follow)),
         ("lyapunov", json!(options.lyapunov)),
+        ("diagram", json!(options.diagram)),
         ("rtol", json!(options.rtol)),
         ("max_returns", json!(options.max_returns)),
         ("max_steps", json!(options.max_steps)),
@@ -72,6 +73,14 @@ pub(super) fn canonical(options: &SweepOptions, grid: &[(&str, String)]) -> Vec<
             ("reference-rate", maybe(slab.reference_rate)),
             ("normal-stress", maybe(slab.normal_stress)),
             (
+                "second-evolution-effect",
+                maybe(slab.second_evolution_effect),
+            ),
+            ("second-slip-length", maybe(slab.second_slip_length)),
+            ("mass", maybe(slab.mass)),
+            ("normal-stress-coupling", maybe(slab.normal_stress_coupling)),
+            ("diagram", options.diagram.clone()),
+            (
                 "set",
                 Some(slab.text.set.join(",")).filter(|set| !set.is_empty()),
             ),
@@ -87,6 +96,9 @@ pub(super) fn canonical(options: &SweepOptions, grid: &[(&str, String)]) -> Vec<
         if let Some(text) = text.filter(|text| Some(text) != usual.as_ref()) {
             words.extend([format!("--{name}"), text]);
         }
+    }
+    for text in &options.slab.modulate {
+        words.extend(["--modulate".to_owned(), text.split_whitespace().collect()]);
     }
     let switches = [
         ("si", options.slab.si),

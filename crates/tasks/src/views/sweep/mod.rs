@@ -2,11 +2,13 @@
 
 mod attractors;
 mod basin;
+mod diagram;
 mod line;
 mod plane;
 pub mod tints;
 
 pub use basin::{Basins, basin_map, basins_of_states};
+pub use diagram::diagram_picture;
 pub use line::regime_line;
 pub use plane::{parameter_map, regime_map};
 
