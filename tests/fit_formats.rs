@@ -48,7 +48,32 @@ fn grouped_german(x: f64) -> String {
     grouped(x).chars().map(swap).collect()
 }
 
-const FILES: [File; 14] = [
+const FILES: [File; 16] = [
+    // As xlook writes its tables: numbered rows, whose numbers have no name.
+    File {
+        name: "xlook.txt",
+        head: "number of records = 424645\n            col 1       col 2       col 3       col 4       col 5       col 9      col 10\n          LP_Disp  Shr_stress    nor_disp  Nor_stress        Time   Samp_Freq          mu\n              mic         MPa      micron         MPa         sec          Hz           .\n      424645 recs 424645 recs 424645 recs 424645 recs 424645 recs 424645 recs 424645 recs\n",
+        row: |i, t, x, mu| {
+            let cells = shown(&[
+                x * 1e6 + 4643.5,
+                8.0 * mu,
+                -782.0,
+                8.0,
+                t + 2531.0,
+                10.0,
+                mu,
+            ]);
+            format!("{:6} {}\n", 87_309 + i, cells.join("  "))
+        },
+        bytes: utf8,
+    },
+    // As R's write.table does.
+    File {
+        name: "r.txt",
+        head: "\"time_s\" \"displacement_um\" \"friction\"\n",
+        row: |i, t, x, mu| format!("\"{}\" {}\n", i + 1, shown(&[t, x * 1e6, mu]).join(" ")),
+        bytes: utf8,
+    },
     File {
         name: "excel-german.csv",
         head: "sep=;\r\nZeit (s);Weg (µm);Reibungskoeffizient;;\r\n",

@@ -25,6 +25,8 @@ pub struct Guess {
 
 /// Samples of a velocity, at least, for a step to begin or end with.
 const SAMPLES: usize = 8;
+/// Smaller changes of velocity, in their logarithm, as a record begins are no steps.
+const JUMP: f64 = 0.05;
 /// Samples on either side that a moving median takes.
 const AROUND: usize = 2;
 
@@ -78,9 +80,10 @@ impl<'a> Shown<'a> {
 
     fn of_step(&self, [before, after]: [Stretch; 2], reference_rate: f64) -> Option<Guess> {
         let times = &self.record.times;
-        let step = times.partition_point(|&t| t < before.span.1);
+        // Where a record begins with the step, or with the hold, its first sample is the level before.
+        let step = times.partition_point(|&t| t < before.span.1).max(1);
         let end = times.partition_point(|&t| t < after.span.1);
-        if step < 1 || end < step + 5 {
+        if end < step + 5 {
             return None;
         }
         let (slow, fast) = (before.velocity.1, after.velocity.0);
@@ -108,8 +111,8 @@ impl<'a> Shown<'a> {
     fn of_hold(&self, [before, hold, after]: [Stretch; 3], reference_rate: f64) -> Option<Guess> {
         let times = &self.record.times;
         let [begin, again, end] =
-            [before, hold, after].map(|one| times.partition_point(|&t| t < one.span.1));
-        if begin < 1 || again < begin + 5 || end < again + 5 {
+            [before, hold, after].map(|one| times.partition_point(|&t| t < one.span.1).max(1));
+        if again < begin + 5 || end < again + 5 {
             return None;
         }
         let (level, noise) = self.level(begin);
@@ -144,7 +147,7 @@ impl<'a> Shown<'a> {
 }
 
 /// The stretches of one velocity that have samples enough to be more than a part of a step: motors take a moment. The first one may have few, as
-/// all begins at steady sliding.
+/// all begins at steady sliding, and none where the record begins with a step.
 fn long_stretches(record: &Record, motion: &Motion) -> Vec<Stretch> {
     let until = |t: f64| record.times.partition_point(|&own| own < t);
     let is_long = |(i, stretch): &(usize, &Stretch)| {
@@ -155,7 +158,14 @@ fn long_stretches(record: &Record, motion: &Motion) -> Vec<Stretch> {
             && (is_first || count >= SAMPLES.max(record.times.len() / 50))
     };
     let all = motion.stretches.iter().enumerate().filter(is_long);
-    all.map(|(_, stretch)| *stretch).collect()
+    let begin = motion.stretches.first();
+    let jump = begin.filter(|one| (one.velocity.0 / motion.before).ln().abs() > JUMP);
+    let sliding = jump.map(|first| Stretch {
+        span: (first.span.0, first.span.0),
+        velocity: (motion.before, motion.before),
+    });
+    let rest = all.map(|(_, stretch)| *stretch);
+    sliding.into_iter().chain(rest).collect()
 }
 
 /// The two stretches between which the velocity changes most, in its logarithm.

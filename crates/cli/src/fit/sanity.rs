@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 use twinslip::error::Result;
-use twinslip::fit::{Autoregression, DRIFT, Fit, Problem, Record};
+use twinslip::fit::{Autoregression, DRIFT, Fit, Problem, Record, Scale};
 use twinslip_tasks::scene::{FitPlan, LawToFit, WithProblem};
 use twinslip_tasks::views::in_digits;
 
@@ -40,6 +40,18 @@ pub fn questions(plan: &FitPlan, law: &LawToFit, fit: &Fit) -> Vec<String> {
                 in_digits(effect, 3)
             ));
         }
+    }
+    let b = fit
+        .parameters
+        .iter()
+        .find(|one| one.name == "evolution_effect");
+    if b.is_some_and(|b| {
+        b.scale == Scale::Logarithmic && fit.verdict.undetermined.contains(&b.label())
+    }) {
+        all.push(
+            "evolution_effect is looked for above zero only: does friction, after its jump, go on in the direction of the step, as that of clays does? Then it is negative: give `bounds` evolution_effect=-0.1:0.1"
+                .into(),
+        );
     }
     let (least, most) = FRICTION;
     if let Some(friction) = value("reference_friction").filter(|x| !(least..=most).contains(x)) {

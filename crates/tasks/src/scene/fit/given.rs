@@ -48,7 +48,6 @@ impl Given {
         let mut given = Vec::new();
         for (name, value) in [
             ("direct_effect", options.direct_effect),
-            ("evolution_effect", options.evolution_effect),
             ("slip_length", options.slip_length),
             ("slip_length_2", options.slip_length_2),
             ("reference_friction", options.reference_friction),
@@ -59,6 +58,7 @@ impl Given {
             given.extend(checked.transpose()?.map(|x| (name.to_owned(), x)));
         }
         for (name, value) in [
+            ("evolution_effect", options.evolution_effect),
             ("evolution_effect_2", options.evolution_effect_2),
             ("residual_strength", options.residual_strength),
         ] {
@@ -169,6 +169,18 @@ pub(super) fn bounds(
         )));
     }
     Ok((low, high.min(most)))
+}
+
+/// Whether b may be negative, as it is of clays: where its bounds, or the value that is given, say so.
+pub(super) fn is_negative(options: &FitOptions, name: &str) -> bool {
+    let below = |text: &String| {
+        let (own, range) = text.split_once('=')?;
+        let low = range.split(':').next()?.trim().parse::<f64>().ok()?;
+        Some(own.trim().replace('-', "_") == name && low < 0.0)
+    };
+    name == "evolution_effect"
+        && (options.evolution_effect.is_some_and(|b| b < 0.0)
+            || options.bounds.iter().any(|text| below(text) == Some(true)))
 }
 
 /// # Errors

@@ -87,7 +87,7 @@ pub(super) fn plain(name: &str) -> String {
 
 /// The head of a file with so many columns, from the lines before its numbers: the line that names most columns that are known, and that
 /// below it where it holds units. Titles are no names. `remarks` are looked at where no other line has the names.
-pub(super) fn headings(
+pub(super) fn headings_of(
     words: &[&str],
     remarks: &[&str],
     (separator, width): (Separator, usize),

@@ -1,6 +1,6 @@
 //! A law that is fitted: its parameters, which are free, where the search begins.
 
-use super::given::{Given, bounds, unknown_bounds};
+use super::given::{Given, bounds, is_negative, unknown_bounds};
 use super::options::{FitOptions, USUALLY_FREE};
 use super::plan::{FitPlan, Piece, Recording, WithProblem};
 use crate::scene::shipped::shipped_law;
@@ -164,7 +164,10 @@ impl LawToFit {
         }
         let mut free = Vec::with_capacity(names.len());
         for name in names {
-            let scale = scale(&name, constants);
+            let scale = match is_negative(options, &name) {
+                true => Scale::Linear,
+                false => scale(&name, constants),
+            };
             let bounds = bounds((options, all_given), &name, scale)?;
             free.push(FreeParameter {
                 name,
@@ -277,6 +280,9 @@ impl LawToFit {
                 });
                 each.collect::<Option<Vec<f64>>>()
             };
+        let mut free = self.free.iter();
+        let may_harden = free.any(|one| one.name == "evolution_effect" && one.bounds.0 < 0.0)
+            || self.value("evolution_effect").is_some_and(|b| b < 0.0);
         let mut starts = Vec::new();
         let seconds = if self.states == 2 {
             &SECOND[..]
@@ -285,7 +291,8 @@ impl LawToFit {
         };
         for &second in seconds {
             starts.extend(of(shown.first().copied(), (1.0, 1.0), second, true));
-            for &one in shown {
+            let hardens = shown.iter().filter(|_| may_harden).map(hardening);
+            for one in shown.iter().copied().chain(hardens) {
                 for length in [1.0, 0.3, 3.0] {
                     for stiffness in [1.0, 0.4, 2.5] {
                         starts.extend(of(Some(one), (length, stiffness), second, false));
@@ -438,6 +445,21 @@ fn names_of(slider: Slider, states: usize) -> Vec<&'static str> {
         _ => true,
     };
     Slider::NAMES.into_iter().filter(has).collect()
+}
+
+/// What a step shows if friction, after its direct effect, goes on in the direction of the step: b is negative.
+fn hardening(shown: &Guess) -> Guess {
+    /// Of the change from one steady level to the other, a tells that much, and -b the rest.
+    const AT_ONCE: f64 = 0.6;
+    /// By what the spring is stiffer than it seems, as friction reaches its peak long after the spring has been stretched.
+    const STIFFER: f64 = 10.0;
+    let change = shown.direct_effect - shown.evolution_effect;
+    Guess {
+        direct_effect: AT_ONCE * change.abs(),
+        evolution_effect: (AT_ONCE - 1.0) * change.abs(),
+        stiffness: STIFFER * shown.stiffness,
+        ..*shown
+    }
 }
 
 /// Positive ones by their logarithm; b_2, the offset and the slope, and what is zero or negative in a file, by themselves.

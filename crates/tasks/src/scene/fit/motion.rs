@@ -94,7 +94,8 @@ pub(super) fn loaded(options: &FitOptions, measured: &Measured) -> Result<Loaded
     })
 }
 
-/// By a program: what it changes before the window is the velocity that it begins with.
+/// By a program: what it changes before the window is the velocity that it begins with. So is what it changes as the window begins, unless an
+/// earlier velocity is known: then the record begins with that step.
 pub(super) fn by_program(
     program: &str,
     driving: Option<f64>,
@@ -103,9 +104,16 @@ pub(super) fn by_program(
 ) -> Result<Motion> {
     let (begin, end) = (times[0], times[times.len() - 1]);
     let program = Program::read(program, end)?;
-    let done = |change: &&Change| change.until.unwrap_or(change.time) <= begin;
+    let done = |change: &&Change| {
+        change
+            .until
+            .map_or(change.time < begin, |until| until <= begin)
+    };
+    let mut rest = program.changes.iter().skip_while(done);
+    let at_once = rest.find(|change| change.until.is_none() && change.time <= begin);
     let earlier = program.changes.iter().take_while(done).last();
-    let known = earlier.map(|change| change.driving).or(driving);
+    let of = |change: &Change| change.driving;
+    let known = earlier.map(of).or(driving).or(at_once.map(of));
     let before = known.or(shown.map(|motion| motion.before)).ok_or_else(|| {
         Error::Input(
             "`driving`, the velocity before the first change of the `program`, is missing".into(),

@@ -83,6 +83,7 @@ fn usual(plan: &FitPlan, law: &LawToFit, free: &FreeParameter) -> Result<Prior> 
         high: most,
     };
     Ok(match free.name.as_str() {
+        "evolution_effect" if free.scale == Scale::Linear => symmetric(1.0),
         "direct_effect" | "evolution_effect" => log(1e-6, 1.0),
         "slip_length" | "slip_length_2" => log(free.bounds.0, free.bounds.1),
         // Friction rises by 0.01 over the whole record, or by 10 within a sample.

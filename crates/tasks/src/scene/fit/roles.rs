@@ -105,6 +105,7 @@ const NORMAL_STRESSES: &[&str] = &[
     "effectivenormalstress",
     "effnormalstress",
     "normalstress",
+    "norstress",
     "normal",
     "sigman",
     "sigma",

@@ -2,7 +2,7 @@
 
 use super::cells::{Separator, decoded};
 use super::clock::Moment;
-use super::heading::{Heading, headings};
+use super::heading::{Heading, headings_of};
 use super::numeral::{Decimal, is_mark, numeral};
 use crate::scene::file::read_bytes;
 use crate::scene::text::given_text;
@@ -82,7 +82,10 @@ impl Table {
             let all = numeric_cells.iter().filter(|is| **is).count();
             let is_as_wide =
                 own.len() == numeric_cells.len() || 2 * own.len() > numeric_cells.len();
-            is_as_wide && 2 * same > all
+            // `2900 recs 2900 recs` is a line of words with numbers.
+            let numbers = own.iter().filter(|is| **is).count();
+            let is_of_words = own.len() > numeric_cells.len() && 2 * numbers <= own.len();
+            is_as_wide && !is_of_words && 2 * same > all
         };
         let first = lines
             .told
@@ -113,7 +116,13 @@ impl Table {
                     .trim_start_matches(['#', '%', '/', '!'])
             })
             .collect();
-        let headings = headings(&words, &remarks, (separator, width));
+        let mut headings = headings_of(&words, &remarks, (separator, width));
+        if headings.is_empty() && is_counted(separator, &text, &rows) {
+            headings = headings_of(&words, &remarks, (separator, width - 1));
+            if !headings.is_empty() {
+                headings.insert(0, Heading::of(""));
+            }
+        }
         let body = &text[begin..];
         let may_have_commas = match separator {
             Separator::Sign(b',') => body.contains('"'),
@@ -280,6 +289,14 @@ impl Table {
             ))),
         }
     }
+}
+
+/// Whether the first column numbers the rows, one after the other: such a column often has no name.
+fn is_counted(separator: Separator, text: &str, rows: &[Row]) -> bool {
+    let first = |row: &Row| separator.cells(&text[row.span.clone()]).next();
+    let counts = rows.iter().map(|row| first(row)?.parse::<i64>().ok());
+    let counts: Option<Vec<i64>> = counts.collect();
+    counts.is_some_and(|all| all.len() > 1 && all.windows(2).all(|pair| pair[1] == pair[0] + 1))
 }
 
 /// Which cells of a line are numbers.

@@ -4,7 +4,13 @@ use crate::scene::words::Kind;
 use twinslip::error::{Error, Result};
 
 /// Units of numbers without one.
-const RATIOS: [(&str, f64); 4] = [("1", 1.0), ("-", 1.0), ("none", 1.0), ("%", 1e-2)];
+const RATIOS: [(&str, f64); 5] = [
+    ("1", 1.0),
+    ("-", 1.0),
+    (".", 1.0),
+    ("none", 1.0),
+    ("%", 1e-2),
+];
 
 /// Units that instruments write beside those of options.
 const OF_INSTRUMENTS: [(&str, Kind, f64); 16] = [
