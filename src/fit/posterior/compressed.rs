@@ -12,6 +12,8 @@ use std::ops::Range;
 const NODES: usize = 9;
 /// An element of fewer samples takes them all.
 const FEW: usize = 2 * NODES;
+/// With more nodes the quadratic form costs more than it spares: its making grows with their square.
+const MOST: usize = 500;
 
 /// What a record says of differences of friction from that of the minimum.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,21 +29,25 @@ pub(super) struct Compressed {
 }
 
 impl Compressed {
-    /// With the noise, residuals at the minimum as they count, and the roots of the weights. `shapes` are differences that occur, in standard
+    /// With the noise, residuals at the minimum as they count, the roots of the weights, and the times of the samples, which ascend. `shapes` are differences that occur, in standard
     /// deviations of the noise, of which none may be off by more than `tolerance` in the root of the sum of squares; `stretches` are samples
-    /// between which friction is smooth. `straight` is what the straight line's slope is multiplied by at each sample.
+    /// between which friction is smooth. `straight` is what the straight line's slope is multiplied by at each sample. None where that takes
+    /// more than [`MOST`] nodes, or more than half of the samples.
     pub fn new(
-        (noise, residuals, weights): (&Autoregression, &[f64], &[f64]),
+        (noise, residuals, weights, times): (&Autoregression, &[f64], &[f64], &[f64]),
         straight: &[f64],
         stretches: &[Range<usize>],
         (shapes, tolerance): (&DMatrix<f64>, f64),
-    ) -> Self {
+    ) -> Option<Self> {
         let count = residuals.len();
         let mut elements = Vec::new();
         for stretch in stretches {
-            divide(stretch.clone(), shapes, tolerance, &mut elements);
+            divide(stretch.clone(), times, (shapes, tolerance), &mut elements);
         }
         let nodes: Vec<usize> = elements.iter().flat_map(|one| one.nodes.clone()).collect();
+        if nodes.len() > MOST.min(count / 2) {
+            return None;
+        }
         // All columns as they count, without the noise's memory.
         let mut columns = DMatrix::zeros(count, nodes.len() + 1);
         let mut begun = 0;
@@ -64,12 +70,12 @@ impl Compressed {
         let known = noise.coefficients.len();
         let columns = columns.rows(known, count - known);
         let innovations = innovations.rows(known, count - known);
-        Compressed {
+        Some(Compressed {
             nodes,
             least: innovations.norm_squared(),
             linear: columns.tr_mul(&innovations),
             quadratic: columns.tr_mul(&columns),
-        }
+        })
     }
 
     /// The sum of squares of innovations where the friction differs by so much at the nodes, with the difference of the slope behind; and its
@@ -81,19 +87,21 @@ impl Compressed {
     }
 }
 
-/// Samples between which differences are polynomials.
-struct Element {
+/// Samples between which differences are polynomials in time: clocks tick unevenly.
+struct Element<'a> {
+    times: &'a [f64],
     samples: Range<usize>,
     nodes: Vec<usize>,
     /// The barycentric weights of the nodes; none where every sample is one.
     barycentric: Vec<f64>,
 }
 
-impl Element {
-    fn new(samples: Range<usize>) -> Self {
+impl<'a> Element<'a> {
+    fn new(samples: Range<usize>, times: &'a [f64]) -> Self {
         if samples.len() <= FEW {
             return Element {
                 nodes: samples.clone().collect(),
+                times,
                 samples,
                 barycentric: Vec::new(),
             };
@@ -105,15 +113,17 @@ impl Element {
             samples.start + (0.5 * last * (1.0 - angle.cos())).round() as usize
         };
         let nodes: Vec<usize> = (0..NODES).map(place).collect();
+        let lasts = times[samples.end - 1] - times[samples.start];
         let weight = |k: usize| {
             let others = (0..NODES).filter(|&j| j != k);
             let product: f64 = others
-                .map(|j| (nodes[k] as f64 - nodes[j] as f64) / last)
+                .map(|j| (times[nodes[k]] - times[nodes[j]]) / lasts)
                 .product();
             1.0 / product
         };
         let barycentric = (0..NODES).map(weight).collect();
         Element {
+            times,
             samples,
             nodes,
             barycentric,
@@ -129,7 +139,7 @@ impl Element {
         }
         let pairs = self.nodes.iter().zip(&self.barycentric);
         let terms: Vec<f64> = pairs
-            .map(|(&node, by)| by / (row as f64 - node as f64))
+            .map(|(&node, by)| by / (self.times[row] - self.times[node]))
             .collect();
         let sum: f64 = terms.iter().sum();
         terms.into_iter().map(|term| term / sum).collect()
@@ -137,13 +147,13 @@ impl Element {
 }
 
 /// Elements of a stretch in which no shape is off by its share of the tolerance.
-fn divide(
+fn divide<'a>(
     samples: Range<usize>,
-    shapes: &DMatrix<f64>,
-    tolerance: f64,
-    elements: &mut Vec<Element>,
+    times: &'a [f64],
+    (shapes, tolerance): (&DMatrix<f64>, f64),
+    elements: &mut Vec<Element<'a>>,
 ) {
-    let element = Element::new(samples.clone());
+    let element = Element::new(samples.clone(), times);
     let share = tolerance.powi(2) * samples.len() as f64 / shapes.nrows() as f64;
     let mut off = DVector::<f64>::zeros(shapes.ncols());
     if !element.barycentric.is_empty() {
@@ -161,6 +171,7 @@ fn divide(
         return;
     }
     let middle = samples.start + samples.len() / 2;
-    divide(samples.start..middle, shapes, tolerance, elements);
-    divide(middle..samples.end, shapes, tolerance, elements);
+    for half in [samples.start..middle, middle..samples.end] {
+        divide(half, times, (shapes, tolerance), elements);
+    }
 }

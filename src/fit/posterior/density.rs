@@ -195,19 +195,25 @@ impl<'a, const N: usize> Density<'a, N> {
             friction: Vec::new(),
             slopes: Vec::new(),
         };
-        let mut spared = false;
         for (i, rows) in self.problem.rows().into_iter().enumerate() {
             let one = &self.problem.records[i];
             let noise = &self.noise[i];
             let weights: Vec<f64> = one.record.weights.iter().map(|w| w.sqrt()).collect();
             let deviation = noise.innovation.sqrt().max(f64::MIN_POSITIVE);
             let own = shapes.rows(rows.start, rows.len()) / deviation;
-            let compressed = Compressed::new(
-                (noise, &residuals.values.as_slice()[rows.clone()], &weights),
+            let Some(compressed) = Compressed::new(
+                (
+                    noise,
+                    &residuals.values.as_slice()[rows.clone()],
+                    &weights,
+                    &one.record.times,
+                ),
                 &one.record.displacement,
                 &stretches(self.problem, i),
                 (&own, tolerance),
-            );
+            ) else {
+                return Ok(None);
+            };
             let (_, drift) = self.problem.parameters_at(i, x);
             let at = |all: &[f64]| compressed.nodes.iter().map(|&k| all[k]).collect::<Vec<_>>();
             // The straight line is apart.
@@ -218,10 +224,9 @@ impl<'a, const N: usize> Density<'a, N> {
                 .push(made.map(|(mu, x)| mu - drift * x).collect());
             about.times.push(at(&one.record.times));
             about.slopes.push(drift);
-            spared |= 2 * compressed.nodes.len() <= rows.len();
             about.records.push(compressed);
         }
-        Ok(spared.then_some(about))
+        Ok(Some(about))
     }
 }
 
