@@ -1,6 +1,6 @@
 //! Records as laboratories write them: units, numbers, names; and what is refused of them.
 
-use super::command::{folder, refused_in_one_line, run, twinslip};
+use super::command::{folder, object, refused_in_one_line, run, twinslip};
 use serde_json::Value;
 use std::fs;
 
@@ -315,4 +315,33 @@ fn a_record_without_a_response_is_told_as_such() {
         "{}",
         ended.err
     );
+}
+
+/// The values that `docs/fit.md` shows beside each other, by scipy 1.17's `curve_fit` around `odeint` at 1e-11, from two starts:
+/// `python/benchmarks/fit_peers.py`.
+#[test]
+fn a_public_record_has_the_minima_that_scipy_finds() {
+    let names = [
+        "direct_effect",
+        "evolution_effect",
+        "slip_length",
+        "stiffness",
+        "reference_friction",
+    ];
+    let slip = [0.00920893, 0.00936141, 8.76126e-6, 1.319075e11, 0.607_809_2];
+    let ageing = [0.00884182, 0.00897488, 6.53325e-6, 1.390475e11, 0.607_806_4];
+    for (law, values) in [("slip", slip), ("ageing", ageing)] {
+        let made = object(&format!(
+            "fit tests/data/laboratory/basalt.txt --law {law} --from 11650 --to 11690"
+        ));
+        let all = made["result"]["fit"]["parameters"].as_array();
+        for (one, (name, value)) in all.expect("a list").iter().zip(names.iter().zip(values)) {
+            assert_eq!(one["name"], *name);
+            let number = |key: &str| one[key].as_f64().expect("a number");
+            let apart = (number("value") - value).abs() / number("uncertainty");
+            assert!(apart < 2e-3, "{law} {name}: {apart} standard errors: {one}");
+            // The standard error of white noise is that of scipy's covariance.
+            assert!(number("widening") >= 1.0, "{one}");
+        }
+    }
 }
