@@ -29,13 +29,13 @@ pub(super) struct Linear {
     /// What the arcs say of volumes.
     pub logs: Vec<ArcLogs>,
     /// At every node orthonormal columns, the first the plane's normal, the others the axes of coordinates in it.
-    frames: Shared<Vec<Matrix>>,
+    pub(super) frames: Shared<Vec<Matrix>>,
     /// The maps from plane to plane in these coordinates.
     pub maps: Vec<Matrix>,
     /// By arc: end minus next node; g / (n . g) and 1 / (n . g), with g the field at the end and n the next node's normal.
     pub gaps: Vec<Vector>,
     inflow: Shared<Vec<Vector>>,
-    slowness: Shared<Vec<f64>>,
+    pub(super) slowness: Shared<Vec<f64>>,
 }
 
 /// The parameters in which arcs get derivatives.

@@ -31,6 +31,7 @@ mod orbit_curve;
 mod over_interfaces;
 mod over_text;
 pub(crate) mod periodic_schur;
+mod phase_response;
 mod profile;
 mod settle;
 pub(crate) mod shooting;
@@ -70,6 +71,7 @@ pub use orbit_curve::{DirectedPoint, OrbitCurve, Palc, PalcSettings, WatchedFunc
 pub use over_interfaces::OverInterfaces;
 pub use over_text::{Coordinate, OverText};
 pub(crate) use periodic_schur::LogEigenvalue;
+pub use phase_response::{PhaseResponse, phase_response};
 pub use profile::{Profile, profile, profile_of};
 pub use shooting::{Closed, close};
 pub use shooting_nodes::ShootingNodes;

@@ -1,6 +1,6 @@
 //! Orbits in the units in which their system moves by about 1, and back in its own.
 
-use super::{Crosscheck, Orbit, OrbitAccuracy};
+use super::{Crosscheck, Orbit, OrbitAccuracy, PhaseResponse};
 use crate::integrate::MotionUnits;
 use crate::number::Uncertain;
 
@@ -58,6 +58,24 @@ impl MotionUnits {
             each.for_each(|(i, x)| *x = self.inward_value(i, *x));
         }
         orbit
+    }
+
+    /// A phase response in the system's own units.
+    pub fn outward_response(&self, mut row: PhaseResponse) -> PhaseResponse {
+        row.time *= self.time;
+        let each = row.state.iter_mut().zip(&mut row.response).enumerate();
+        for (i, (x, z)) in each {
+            let outward = self.outward_value(i, *x);
+            // Of what is followed by its logarithm a kick is relative to the value.
+            let unit = match self.signs[i] {
+                0.0 => self.sizes[i],
+                _ => outward,
+            };
+            let factor = self.time / unit;
+            *z = Uncertain::new(z.value * factor, z.uncertainty * factor.abs());
+            *x = outward;
+        }
+        row
     }
 
     /// The same orbit by a second method.

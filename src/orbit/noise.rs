@@ -37,7 +37,7 @@ impl Noise {
 }
 
 /// Relative errors of derivatives in units of that of the state.
-const TANGENT: f64 = 3.0;
+pub(super) const TANGENT: f64 = 3.0;
 /// Random errors that are tried: enough for a standard deviation to a third of itself.
 pub(super) const PROBES: usize = 8;
 

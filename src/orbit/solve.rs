@@ -163,9 +163,9 @@ impl OrbitAccuracy {
 /// Tolerance of the other solutions over that of the first.
 const LOOSER: f64 = 8.0;
 /// Parts of the arcs by which their nodes are moved.
-const SHIFTS: [f64; 2] = [0.37, 0.71];
+pub(super) const SHIFTS: [f64; 2] = [0.37, 0.71];
 /// What the period differs by counts so many times.
-const SPREAD: f64 = 2.0;
+pub(super) const SPREAD: f64 = 2.0;
 
 /// A closed shooting with its multipliers.
 pub(super) struct Solved {

@@ -30,10 +30,13 @@ pub fn run(options: &OrbitOptions, call: &Call) -> Result<Ending> {
     // Only the object tells of the second opinion: rows need not wait for it.
     let in_rows = report.format != Format::Json;
     let mut ending = Ending::Done;
-    if in_rows && plan.rows.is_none() {
+    if in_rows && plan.rows.is_none() && plan.response.is_none() {
         ending = write_orbits(plan, &report, &orbit, &others)?;
     }
-    let rows = along(plan, &report, &orbit, picture)?;
+    let rows = match plan.response {
+        None => along(plan, &report, &orbit, picture)?.map(|rows| json!(rows)),
+        Some(_) => responses(plan, &report, &orbit, picture)?,
+    };
     let second = plan.accuracies(&orbit).1;
     let second = second.map_or("", |second| second.method.name());
     let words = format!("once more, by {second}");
@@ -55,7 +58,7 @@ pub fn run(options: &OrbitOptions, call: &Call) -> Result<Ending> {
     };
     if !in_rows {
         let checked = (checked.as_ref(), unchecked.as_deref());
-        let result = result(plan, &orbit, &others, checked, rows.as_ref());
+        let result = result(plan, &orbit, &others, checked, rows);
         ending = write_object(plan, &report, &orbit, result)?;
     }
     report.say(summary(&orbit, checked.as_ref(), plan.system.units()));
@@ -140,6 +143,31 @@ fn along(
     Ok(Some(out.rows))
 }
 
+/// Computes the phase response, draws it where a picture is asked for, and writes its rows or gives those of an object.
+fn responses(
+    plan: &OrbitPlan,
+    report: &Report<'_>,
+    orbit: &Orbit,
+    picture: Option<&Path>,
+) -> Result<Option<Value>> {
+    let system = &plan.system;
+    let rows = progress::during(report, "the phase response", || plan.responses(orbit))?;
+    let rows = rows.unwrap_or_default();
+    if let Some(path) = picture {
+        report.draw(path, &views::picture_of_responses(system, &rows))?;
+    }
+    let (columns, units) = (views::response_columns(system), system.units());
+    if report.format == Format::Json {
+        report.hand_on(units, &columns, &rows);
+        let objects = rows.iter().map(|row| views::object(&columns, row, units));
+        return Ok(Some(objects.map(Value::Object).collect()));
+    }
+    let mut remarks = report.remarks(system, &numerics(plan, orbit));
+    remarks.push(format!("orbit: {}", summary(orbit, None, units)));
+    report.write_all(units, remarks, &columns, &rows)?;
+    Ok(None)
+}
+
 fn numerics(plan: &OrbitPlan, orbit: &Orbit) -> Value {
     let (accuracy, second) = plan.accuracies(orbit);
     json!({
@@ -158,7 +186,7 @@ fn result(
     orbit: &Orbit,
     others: &[Orbit],
     (checked, unchecked): (Option<&Crosscheck>, Option<&str>),
-    rows: Option<&RowList>,
+    rows: Option<Value>,
 ) -> Value {
     let mut main = object(plan, orbit);
     main["crosscheck_note"] = json!(unchecked);
@@ -166,7 +194,7 @@ fn result(
     let rest: Vec<Value> = others.iter().map(|other| object(plan, other)).collect();
     let mut result = json!({"orbit": main, "others": rest});
     if let Some(rows) = rows {
-        result["rows"] = json!(rows);
+        result["rows"] = rows;
     }
     result
 }

@@ -142,6 +142,11 @@ fn sections() -> Vec<Section> {
             described(&views::orbit_columns(&orbits)),
         ),
         section(
+            "orbit with --phase-response",
+            "One row for each point of the orbit.",
+            described(&views::response_columns(&of_two)),
+        ),
+        section(
             "section",
             "One row for each return to the section.",
             described(&section_columns(&of_two)),

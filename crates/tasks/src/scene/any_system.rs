@@ -135,6 +135,15 @@ impl AnySystem {
         }
     }
 
+    /// What measures the time by which a kick in a state advances an orbit, over the kick.
+    pub fn response(&self, state: usize) -> Quantity {
+        match self.quantity(state) {
+            Quantity::Stress => Quantity::TimePerStress,
+            // Logarithms have no unit, and what is in no units has none of time either.
+            _ => Quantity::Time,
+        }
+    }
+
     /// Which variables interfaces have; `None` of what is no interface.
     pub(super) fn layout(&self) -> Option<StateLayout> {
         match &self.0 {

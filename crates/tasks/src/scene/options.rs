@@ -450,8 +450,12 @@ pub struct OrbitOptions {
     /// rows, and JSON has them as result.rows
     #[arg(long, value_name = "N", value_parser = count, help_heading = "Orbit")]
     pub points: Option<usize>,
-    /// Draw stress, states and slip rates (for a user-defined system all states) over one period, and the phase plane, as FILE.svg or
-    /// FILE.png
+    /// Rows of the infinitesimal phase response over one period: the time by which a small kick in each state advances the orbit, over the
+    /// kick, at the --points [default: 101]
+    #[arg(long, help_heading = "Orbit")]
+    pub phase_response: bool,
+    /// Draw stress, states and slip rates (for a user-defined system all states) over one period, and the phase plane, or with
+    /// --phase-response states and responses against the phase, as FILE.svg or FILE.png
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub plot: Option<PathBuf>,
     /// Where results go.

@@ -30,6 +30,8 @@ pub enum Quantity {
     Stiffness,
     /// An eigenvalue.
     Growth,
+    /// A time over a stress.
+    TimePerStress,
     /// Radiation damping eta.
     Damping,
     /// Normal stress sigma of an interface.
@@ -63,6 +65,8 @@ pub struct TimeUnit {
     name: &'static str,
     /// The name of its inverse.
     inverse: &'static str,
+    /// That of it over the pascal.
+    per_pascal: &'static str,
     seconds: f64,
 }
 
@@ -71,6 +75,7 @@ impl TimeUnit {
     pub const SECOND: TimeUnit = TimeUnit {
         name: "s",
         inverse: "1/s",
+        per_pascal: "s/Pa",
         seconds: 1.0,
     };
 
@@ -78,18 +83,21 @@ impl TimeUnit {
     pub(super) const HOUR: TimeUnit = TimeUnit {
         name: "hour",
         inverse: "1/hour",
+        per_pascal: "hour/Pa",
         seconds: 3600.0,
     };
     /// The day.
     pub(super) const DAY: TimeUnit = TimeUnit {
         name: "day",
         inverse: "1/day",
+        per_pascal: "day/Pa",
         seconds: 86_400.0,
     };
     /// The year, of 365.25 days.
     pub(super) const YEAR: TimeUnit = TimeUnit {
         name: "year",
         inverse: "1/year",
+        per_pascal: "year/Pa",
         seconds: 31_557_600.0,
     };
     const ALL: [TimeUnit; 4] = [
@@ -185,6 +193,7 @@ impl Units {
             Quantity::HealingTime => scales.time,
             Quantity::Stiffness => scales.stiffness,
             Quantity::Growth => 1.0 / self.time,
+            Quantity::TimePerStress => self.time / scales.stress,
             Quantity::Damping => scales.stress / scales.slip_rate,
             Quantity::NormalStress => scales.stress / scales.friction,
             Quantity::Mass => scales.stress * scales.time / scales.slip_rate,
@@ -285,6 +294,8 @@ impl Units {
             Quantity::Stiffness => "a sigma/L",
             Quantity::Growth if si => self.time_unit.inverse,
             Quantity::Growth => "V*/L",
+            Quantity::TimePerStress if si => self.time_unit.per_pascal,
+            Quantity::TimePerStress => "L/(V* a sigma)",
             Quantity::Damping if si => "Pa s/m",
             Quantity::Damping => "a sigma/V*",
             Quantity::NormalStress if si => "Pa",

@@ -1,7 +1,11 @@
 //! What periodic orbits show.
 
-use crate::scene::{AnySystem, Column, OrbitPlan, Quantity};
-use twinslip::orbit::Orbit;
+use super::diagram::axis_label;
+use super::heat_map::MOST_PANELS;
+use super::text::parameters_of;
+use crate::scene::{AnySystem, Column, Described, OrbitPlan, Quantity};
+use twinslip::orbit::{Orbit, PhaseResponse};
+use twinslip_output::plot::{Axis, Drawing, Panel, PlotSeries};
 
 /// The columns of periodic orbits; a table has room for what is looked at first.
 pub fn orbit_columns(plan: &OrbitPlan) -> Vec<Column<Orbit>> {
@@ -143,4 +147,90 @@ fn multiplier_columns(i: usize) -> [Column<Orbit>; 4] {
         .meaning("kind of multiplier i: real, complex, or below floor where it is too small for its sign to be known")
         .not_in_table(),
     ]
+}
+
+/// The columns of the phase response.
+pub fn response_columns(system: &AnySystem) -> Vec<Column<PhaseResponse>> {
+    let mut columns = vec![
+        Column::new("phase", Quantity::Number, |row: &PhaseResponse| {
+            row.phase.into()
+        })
+        .meaning("part of the period since the first point of the orbit"),
+        Column::new("time", Quantity::Time, |row: &PhaseResponse| {
+            row.time.into()
+        })
+        .meaning("time since then"),
+    ];
+    let states = system.states();
+    columns.extend(states.iter().enumerate().map(|(i, name)| {
+        let state = move |row: &PhaseResponse| row.state[i].into();
+        let column = Column::new(name.clone(), system.quantity(i), state);
+        column.meaning(match i {
+            0 => "stress",
+            _ => "ln ψ of interface i",
+        })
+    }));
+    columns.extend(states.iter().enumerate().map(|(i, name)| {
+        let response = move |row: &PhaseResponse| row.response[i].into();
+        let column = Column::uncertain(format!("response_{name}"), system.response(i), response);
+        column.meaning(match i {
+            0 => "time by which a small kick in the stress advances the orbit, over the kick",
+            _ => "the same of a kick in ln ψ of interface i",
+        })
+    }));
+    columns
+}
+
+/// The states and the responses against the phase; of many states the responses in one panel.
+pub fn picture_of_responses(system: &AnySystem, rows: &[PhaseResponse]) -> Drawing {
+    let units = system.units();
+    let phases: Vec<f64> = rows.iter().map(|row| row.phase).collect();
+    let columns = response_columns(system);
+    let count = system.states().len();
+    let (states, responses) = columns[2..].split_at(count);
+    let series = |label: &str, column: &Column<PhaseResponse>| {
+        let values = rows.iter().map(|row| column.number(row, units));
+        PlotSeries::new(label, phases.clone(), values.collect())
+    };
+    let panel = |title: String, name: String, quantity, series| Panel {
+        series,
+        ..Panel::new(
+            title,
+            Axis::linear("phase"),
+            Axis::linear(axis_label(&name, quantity, units)),
+        )
+    };
+    if count > MOST_PANELS {
+        let all = |columns: &[Column<PhaseResponse>]| {
+            let names = system.states();
+            let named = columns.iter().zip(&names);
+            named.map(|(column, name)| series(name, column)).collect()
+        };
+        let title = parameters_of(system);
+        return Drawing::columns(vec![vec![
+            panel(title, "states".into(), Quantity::Number, all(states)),
+            panel(
+                String::new(),
+                "response".into(),
+                Quantity::Number,
+                all(responses),
+            ),
+        ]]);
+    }
+    let column = |columns: &[Column<PhaseResponse>], title: String| {
+        let each = columns.iter().enumerate().map(|(i, column)| {
+            let title = if i == 0 { title.clone() } else { String::new() };
+            panel(
+                title,
+                column.name.replace('_', " "),
+                column.quantity,
+                vec![series("", column)],
+            )
+        });
+        each.collect::<Vec<_>>()
+    };
+    Drawing::columns(vec![
+        column(states, parameters_of(system)),
+        column(responses, "phase response".into()),
+    ])
 }

@@ -16,7 +16,7 @@ use twinslip::field::Vector;
 #[cfg(not(feature = "sundials"))]
 use twinslip::integrate::RosenbrockMethod;
 use twinslip::integrate::{Choice, MotionUnits, Tolerances};
-use twinslip::orbit::{Crosscheck, FoundOrbit, Orbit, OrbitAccuracy};
+use twinslip::orbit::{Crosscheck, FoundOrbit, Orbit, OrbitAccuracy, PhaseResponse};
 #[cfg(feature = "sundials")]
 use twinslip::sundials::MultistepMethod;
 
@@ -35,8 +35,10 @@ pub struct OrbitPlan {
     pub second: Option<OrbitAccuracy>,
     /// Whether the user names it.
     pub second_is_asked: bool,
-    /// The rows over one period, where there are to be any.
+    /// The rows of a run over one period, where there are to be any.
     pub rows: Option<Sampling>,
+    /// At how many points the phase response is asked for.
+    pub response: Option<usize>,
     /// Whether the orbit is drawn.
     pub picture: bool,
 }
@@ -50,12 +52,21 @@ impl OrbitPlan {
         let system = AnySystem::new(&options.model)?;
         let search = Search::new(options, &system)?;
         let accuracy = accuracy(options, &system)?;
+        if options.phase_response && system.forcing_period().is_some() {
+            return Err(Error::Input(
+                "`phase_response` is of an orbit whose phase is free: under a periodic forcing no kick moves it".into(),
+            ));
+        }
+        let rows = options.points.map(equally_spaced).transpose()?;
+        let points = options.points.unwrap_or(RESPONSES);
+        let response = options.phase_response.then_some(points);
         Ok(OrbitPlan {
             search,
             atol_is_given: options.atol.is_some(),
             second: second(options.crosscheck.as_deref(), &accuracy)?,
             second_is_asked: options.crosscheck.is_some(),
-            rows: options.points.map(equally_spaced).transpose()?,
+            rows: rows.filter(|_| response.is_none()),
+            response,
             picture: options.plot.is_some(),
             accuracy,
             system,
@@ -89,8 +100,12 @@ impl OrbitPlan {
             method_name(self.accuracy.method),
             self.accuracy.tolerances.rtol,
             longest_in_words(self.accuracy.tolerances, self.system.units()),
-            dense_output(self.rows, self.picture)
-        )
+            dense_output(self.rows, self.picture && self.response.is_none())
+        ) + &self.response.map_or_else(String::new, |points| {
+            format!(
+                "\n  phase response    the adjoint of the tangents, at {points} points; uncertainties by noise and two more solutions"
+            )
+        })
     }
 
     /// Finds the orbit.
@@ -158,7 +173,7 @@ impl OrbitPlan {
     /// The run over one period of an orbit, from its point back to it: along the arcs between its shooting nodes, each from its own
     /// node, as an unstable orbit is soon left. `None` where neither rows nor a picture are asked for.
     pub fn along(&self, orbit: &Orbit) -> Option<Plan> {
-        if self.rows.is_none() && !self.picture {
+        if self.rows.is_none() && !(self.picture && self.response.is_none()) {
             return None;
         }
         let vector = |y: &[f64]| Vector::from_column_slice(y);
@@ -195,6 +210,27 @@ impl OrbitPlan {
             max_steps: self.accuracy.max_steps,
             system: self.system.clone(),
         })
+    }
+
+    /// The phase response along an orbit, in all states; `None` where it is not asked for.
+    ///
+    /// # Errors
+    /// Those of [`phase_response()`](twinslip::orbit::phase_response).
+    pub fn responses(&self, orbit: &Orbit) -> Result<Option<Vec<PhaseResponse>>> {
+        let Some(points) = self.response else {
+            return Ok(None);
+        };
+        let (accuracy, _) = self.accuracies(orbit);
+        let accuracy = (&accuracy, self.atol_is_given);
+        let mut rows = self
+            .search
+            .responses(&self.system, orbit, accuracy, points)?;
+        let (states, own) = (self.system.states().len(), orbit.point.len());
+        if own < states {
+            // Interfaces that move alike share a state, and each has its part of the response.
+            rows.iter_mut().for_each(|row| row.share_last(states));
+        }
+        Ok(Some(rows))
     }
 
     /// The orbit once more, by the second method; `None` where there is none.
@@ -236,6 +272,9 @@ impl OrbitPlan {
         )
     }
 }
+
+/// Points of the phase response where nobody says otherwise.
+const RESPONSES: usize = 101;
 
 /// The method with its tolerances, or those that are given.
 fn accuracy(options: &OrbitOptions, system: &AnySystem) -> Result<OrbitAccuracy> {

@@ -15,8 +15,8 @@ use twinslip::friction::positive;
 use twinslip::integrate::{AnyField, MotionUnits};
 use twinslip::model::UnequalInterfaces;
 use twinslip::orbit::{
-    Crosscheck, FoundOrbit, InitialGuess, InterfaceSystem, Orbit, OrbitAccuracy, Query, crosscheck,
-    crosscheck_of, find, find_either, find_from, find_unequal,
+    Crosscheck, FoundOrbit, InitialGuess, InterfaceSystem, Orbit, OrbitAccuracy, PhaseResponse,
+    Query, crosscheck, crosscheck_of, find, find_either, find_from, find_unequal, phase_response,
 };
 
 /// How an orbit is looked for, and computed once more.
@@ -178,6 +178,41 @@ impl Search {
         })
     }
 
+    /// The phase response along an orbit, at so many points.
+    pub fn responses(
+        &self,
+        system: &AnySystem,
+        orbit: &Orbit,
+        (accuracy, atol_is_given): (&OrbitAccuracy, bool),
+        points: usize,
+    ) -> Result<Vec<PhaseResponse>> {
+        let units = match self {
+            Search::BySymmetry { slab, .. } => {
+                let field = match orbit.point.len() {
+                    2 => AnyField::new::<2>(slab.plane()),
+                    _ => AnyField::new::<3>(slab.whole()),
+                };
+                return phase_response(&field, orbit, accuracy, points);
+            }
+            Search::Unequal(interfaces, _) => {
+                let field = AnyField::of::<3>(interfaces);
+                return phase_response(&field, orbit, accuracy, points);
+            }
+            Search::FromStart {
+                units, logarithmic, ..
+            } => logarithmic.get().unwrap_or(units),
+        };
+        let inward = units.inward_accuracy(*accuracy, atol_is_given);
+        let known = held(units, orbit)?;
+        let equations = system.equations(Subspace::Whole);
+        let rows = phase_response(&equations.field(units)?, &known, &inward, points)
+            .map_err(|error| units.outward_error(error, 0))?;
+        Ok(rows
+            .into_iter()
+            .map(|row| units.outward_response(row))
+            .collect())
+    }
+
     /// The orbit once more, by another method.
     pub fn crosscheck(
         &self,
@@ -196,16 +231,22 @@ impl Search {
             } => logarithmic.get().unwrap_or(units),
         };
         let inward = units.inward_accuracy(*second, atol_is_given);
-        let known = units.inward_orbit(orbit);
-        if !known.nodes.iter().flatten().all(|x| x.is_finite()) {
-            return Err(Error::Input(
-                "on the orbit a state is below the least double".into(),
-            ));
-        }
+        let known = held(units, orbit)?;
         let equations = system.equations(Subspace::Whole);
         let again = crosscheck_of(&equations.field(units)?, &known, &inward)
             .map_err(|error| units.outward_error(error, 0))?;
         Ok(units.outward_crosscheck(again))
+    }
+}
+
+/// An orbit in the units in which it was found.
+fn held(units: &MotionUnits, orbit: &Orbit) -> Result<Orbit> {
+    let known = units.inward_orbit(orbit);
+    match known.nodes.iter().flatten().all(|x| x.is_finite()) {
+        true => Ok(known),
+        false => Err(Error::Input(
+            "on the orbit a state is below the least double".into(),
+        )),
     }
 }
 
