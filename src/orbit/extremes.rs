@@ -17,6 +17,8 @@ use crate::series::{REFERENCE_ORDER, Section, Zeros};
 pub(super) struct Extremes {
     /// Of every variable.
     pub ranges: Vec<(f64, f64)>,
+    /// Where these are: on which arc, and the time since its node.
+    pub moments: Vec<[(usize, f64); 2]>,
     pub slip_rate_max: f64,
     /// The time since the first node, and where the first variable, tau, falls through the level asked for then.
     pub passage: Option<(f64, Vector)>,
@@ -70,6 +72,7 @@ fn extremes_by(
     };
     let mut all = Extremes {
         ranges: vec![(f64::INFINITY, f64::NEG_INFINITY); dimension],
+        moments: vec![[(0, 0.0); 2]; dimension],
         slip_rate_max: f64::NEG_INFINITY,
         passage: None,
     };
@@ -78,18 +81,19 @@ fn extremes_by(
     // The sign goes on from arc to arc, so that no passage at a node is lost.
     let mut through = Zeros::default();
     let mut begin = 0.0;
-    for (x, &duration) in shooting.nodes.iter().zip(&shooting.durations) {
+    let arcs = shooting.nodes.iter().zip(&shooting.durations);
+    for (k, (x, &duration)) in arcs.enumerate() {
         let mut turns_of = vec![Zeros::default(); dimension];
-        all.see(x.as_slice());
+        all.see(x.as_slice(), (k, 0.0));
         tracer.flow(
             field,
             x,
             duration,
             Some(&mut |step| {
-                all.see(step.y1);
+                all.see(step.y1, (k, step.t1));
                 found.clear();
                 let Some(series) = step.series() else {
-                    turns_within(field, step, &mut |turn| all.see(turn))?;
+                    turns_within(field, step, &mut |turn, at| all.see(turn, (k, at)))?;
                     return Ok(Control::Continue);
                 };
                 for (normal, zeros) in axes.iter().zip(&mut turns_of) {
@@ -98,7 +102,10 @@ fn extremes_by(
                     };
                     series.crossings(section, None, zeros, &mut found);
                 }
-                found.iter().for_each(|turn| all.see(&turn.state));
+                for turn in &found {
+                    let at = (series.begin() + turn.time).hi();
+                    all.see(&turn.state, (k, at));
+                }
                 if level.is_some() && all.passage.is_none() {
                     found.clear();
                     let down = Some(Crossing::Downwards);
@@ -135,11 +142,11 @@ fn extremes_by(
     Ok(all)
 }
 
-/// The states within a step that has no series where the rate of a variable is 0.
+/// The states, and their times, within a step that has no series where the rate of a variable is 0.
 fn turns_within(
     field: &AnyField<'_>,
     step: &AnyStep<'_>,
-    see: &mut dyn FnMut(&[f64]),
+    see: &mut dyn FnMut(&[f64], f64),
 ) -> Result<()> {
     /// Parts of the step: a variable that turns twice in one is missed.
     const PARTS: usize = 4;
@@ -154,7 +161,7 @@ fn turns_within(
                 let turn = bracketed_root("an extremum", time(k), time(k + 1), |t| {
                     (rate(t)[i], f64::NAN)
                 })?;
-                see(step.at(turn).0.as_slice());
+                see(step.at(turn).0.as_slice(), step.t0 + (turn - begin));
             }
         }
     }
@@ -162,9 +169,15 @@ fn turns_within(
 }
 
 impl Extremes {
-    fn see(&mut self, y: &[f64]) {
-        for ((least, most), &y) in self.ranges.iter_mut().zip(y) {
-            (*least, *most) = (least.min(y), most.max(y));
+    fn see(&mut self, y: &[f64], at: (usize, f64)) {
+        let seen = self.ranges.iter_mut().zip(&mut self.moments).zip(y);
+        for (((least, most), moments), &y) in seen {
+            if y < *least {
+                (*least, moments[0]) = (y, at);
+            }
+            if y > *most {
+                (*most, moments[1]) = (y, at);
+            }
         }
     }
 

@@ -63,6 +63,11 @@ impl Multiplier {
         }
     }
 
+    /// A positive number.
+    pub(super) fn positive(ln_abs: Uncertain) -> Self {
+        Multiplier::real(ln_abs.value, ln_abs.uncertainty, false)
+    }
+
     /// arg mu / pi, where it is known.
     pub fn known_angle(&self) -> Option<f64> {
         (self.kind != Kind::BelowFloor).then_some(self.angle_over_pi)
@@ -195,7 +200,7 @@ const TURNS: usize = 30;
 const SETTLED: f64 = 1e-12;
 
 /// The sums of the logarithms of the determinants: by the best the method has, and its uncertainty; and their defect.
-fn volume(arcs: &[Arc]) -> (Uncertain, Option<f64>) {
+pub(super) fn volume(arcs: &[Arc]) -> (Uncertain, Option<f64>) {
     let by_matrix: f64 = arcs.iter().map(|arc| arc.tangent_volume()).sum();
     let by_trace: Option<f64> = arcs.iter().map(|arc| arc.log_determinant).sum();
     match by_trace {
@@ -255,7 +260,8 @@ impl Regular {
     }
 }
 
-fn around(nodes: &[Vector], linear: &Linear, field: &AnyField<'_>) -> Floquet {
+/// The same by a linearisation at these nodes.
+pub(super) fn around(nodes: &[Vector], linear: &Linear, field: &AnyField<'_>) -> Floquet {
     let Linear { arcs, maps, .. } = linear;
     let (volume, liouville_defect) = volume(arcs);
     let errors: Vec<f64> = arcs.iter().map(Arc::noise).collect();

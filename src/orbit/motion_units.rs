@@ -1,6 +1,6 @@
 //! Orbits in the units in which their system moves by about 1, and back in its own.
 
-use super::{Crosscheck, Orbit, OrbitAccuracy, PhaseResponse};
+use super::{Crosscheck, Orbit, OrbitAccuracy, PhaseResponse, Sensitivity};
 use crate::integrate::MotionUnits;
 use crate::number::Uncertain;
 
@@ -58,6 +58,28 @@ impl MotionUnits {
             each.for_each(|(i, x)| *x = self.inward_value(i, *x));
         }
         orbit
+    }
+
+    /// The derivatives of an orbit, with these extremes in these units, in the system's own.
+    pub fn outward_sensitivity(
+        &self,
+        mut found: Sensitivity,
+        extremes: &[[Uncertain; 2]],
+    ) -> Sensitivity {
+        found.period = self.outward_time(found.period);
+        for (i, both) in found.extremes.iter_mut().enumerate() {
+            for (slope, x) in both.iter_mut().zip(extremes[i]) {
+                let unit = match self.signs[i] {
+                    0.0 => self.sizes[i],
+                    _ => self.outward_value(i, x.value),
+                };
+                *slope = Uncertain::new(slope.value * unit, slope.uncertainty * unit.abs());
+            }
+            if self.direction(i) < 0.0 {
+                both.reverse();
+            }
+        }
+        found
     }
 
     /// A phase response in the system's own units.

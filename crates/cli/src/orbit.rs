@@ -13,7 +13,9 @@ use twinslip::error::{Error, Result};
 use twinslip::number::Uncertain;
 use twinslip::orbit::{Crosscheck, FoundOrbit, Kind, Multiplier, Orbit};
 use twinslip_output::{Format, RowList, plot};
-use twinslip_tasks::scene::{Described, OrbitOptions, OrbitPlan, Quantity, Units};
+use twinslip_tasks::scene::{
+    Described, OrbitDerivatives, OrbitOptions, OrbitPlan, Quantity, Units,
+};
 use twinslip_tasks::views;
 
 pub fn run(options: &OrbitOptions, call: &Call) -> Result<Ending> {
@@ -27,11 +29,12 @@ pub fn run(options: &OrbitOptions, call: &Call) -> Result<Ending> {
     }
     let FoundOrbit { orbit, others } =
         progress::during(&report, "looking for the orbit", || plan.find())?;
+    let derivatives = progress::during(&report, "the derivatives", || plan.derivatives(&orbit))?;
     // Only the object tells of the second opinion: rows need not wait for it.
     let in_rows = report.format != Format::Json;
     let mut ending = Ending::Done;
     if in_rows && plan.rows.is_none() && plan.response.is_none() {
-        ending = write_orbits(plan, &report, &orbit, &others)?;
+        ending = write_orbits(plan, &report, (&orbit, &derivatives), &others)?;
     }
     let rows = match plan.response {
         None => along(plan, &report, &orbit, picture)?.map(|rows| json!(rows)),
@@ -58,7 +61,7 @@ pub fn run(options: &OrbitOptions, call: &Call) -> Result<Ending> {
     };
     if !in_rows {
         let checked = (checked.as_ref(), unchecked.as_deref());
-        let result = result(plan, &orbit, &others, checked, rows);
+        let result = result(plan, (&orbit, &derivatives), &others, checked, rows);
         ending = write_object(plan, &report, &orbit, result)?;
     }
     report.say(summary(&orbit, checked.as_ref(), plan.system.units()));
@@ -183,12 +186,15 @@ fn numerics(plan: &OrbitPlan, orbit: &Orbit) -> Value {
 /// What the object holds.
 fn result(
     plan: &OrbitPlan,
-    orbit: &Orbit,
+    (orbit, derivatives): (&Orbit, &[OrbitDerivatives]),
     others: &[Orbit],
     (checked, unchecked): (Option<&Crosscheck>, Option<&str>),
     rows: Option<Value>,
 ) -> Value {
     let mut main = object(plan, orbit);
+    if !derivatives.is_empty() {
+        main["derivatives"] = of_parameters(plan, derivatives);
+    }
     main["crosscheck_note"] = json!(unchecked);
     main["crosscheck"] = checked.map_or(Value::Null, |checked| comparison(checked, plan));
     let rest: Vec<Value> = others.iter().map(|other| object(plan, other)).collect();
@@ -216,14 +222,16 @@ fn write_object(
 fn write_orbits(
     plan: &OrbitPlan,
     report: &Report<'_>,
-    orbit: &Orbit,
+    (orbit, derivatives): (&Orbit, &[OrbitDerivatives]),
     others: &[Orbit],
 ) -> Result<Ending> {
+    let mut columns = views::orbit_columns(plan);
+    columns.extend(views::derivative_columns(plan, orbit, derivatives));
     let system = &plan.system;
     report.write_all(
         system.units(),
         report.remarks(system, &numerics(plan, orbit)),
-        &views::orbit_columns(plan),
+        &columns,
         std::iter::once(orbit).chain(others),
     )
 }
@@ -291,6 +299,35 @@ fn object(plan: &OrbitPlan, orbit: &Orbit) -> Value {
         object["state_min"] = json!(units.outward(Quantity::State, orbit.state_min));
     }
     object
+}
+
+/// The derivatives by what they are of, and then by parameter.
+fn of_parameters(plan: &OrbitPlan, all: &[OrbitDerivatives]) -> Value {
+    let by_name = |of: &dyn Fn(&OrbitDerivatives) -> Option<Uncertain>| -> Value {
+        let one = |one: &OrbitDerivatives| {
+            let slope = of(one).map(|x| twinslip_output::uncertain((x.value, x.uncertainty)));
+            (one.name.clone(), json!(slope))
+        };
+        all.iter().map(one).collect::<Map<_, _>>().into()
+    };
+    let multipliers = all.first().map_or(0, |one| one.ln_abs.len());
+    let logs: Vec<Value> = (0..multipliers)
+        .map(|j| by_name(&|one| one.ln_abs[j]))
+        .collect();
+    let extremes = |end: usize| -> Value {
+        let states = plan.system.states().into_iter().enumerate();
+        let one = |(i, name): (usize, std::borrow::Cow<'static, str>)| {
+            let slopes = by_name(&|one| Some(one.extremes[i][end]));
+            (name.into_owned(), slopes)
+        };
+        states.map(one).collect::<Map<_, _>>().into()
+    };
+    json!({
+        "period": by_name(&|one| Some(one.period)),
+        "minimum": extremes(0),
+        "maximum": extremes(1),
+        "ln_abs": logs,
+    })
 }
 
 /// All multipliers, the trivial one first, which there is none of under a forcing; of a conjugate pair the second one below the axis.

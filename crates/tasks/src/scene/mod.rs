@@ -106,8 +106,8 @@ pub use options::{
     EquilibriaOptions, IntegrateOptions, LawOptions, ModelOptions, NumericsOptions, OrbitOptions,
     OutputOptions, SectionOptions, SlabOptions,
 };
-pub use orbit::OrbitPlan;
 pub use orbit::SECOND_METHOD;
+pub use orbit::{OrbitDerivatives, OrbitPlan};
 pub use plan::{Plan, Point, Sampling, start, tolerances};
 pub use program::{Change, Program, Stretch};
 pub use run::{RunOutcome, Sink, run};

@@ -450,6 +450,10 @@ pub struct OrbitOptions {
     /// rows, and JSON has them as result.rows
     #[arg(long, value_name = "N", value_parser = count, help_heading = "Orbit")]
     pub points: Option<usize>,
+    /// Derivatives of the period, of the least and largest value of each state and of ln |mu| of each multiplier in these parameters,
+    /// comma-separated, as result.orbit.derivatives
+    #[arg(long, value_name = "NAME,...", help_heading = "Orbit")]
+    pub derivatives: Option<String>,
     /// Rows of the infinitesimal phase response over one period: the time by which a small kick in each state advances the orbit, over the
     /// kick, at the --points [default: 101]
     #[arg(long, help_heading = "Orbit")]

@@ -48,7 +48,7 @@ pub use look::{look_columns, picture_of_look};
 pub use many::many_run;
 pub use many_equilibria::steady_interface_columns;
 pub use map::{picture_of_section, return_map, states_at_returns};
-pub use orbit::{known, orbit_columns, picture_of_responses, response_columns};
+pub use orbit::{derivative_columns, known, orbit_columns, picture_of_responses, response_columns};
 pub use points::{Dot, REGIMES, diagram_columns, dots, outcome, sweep_columns, sweep_row};
 pub use run::{event_columns, panels_in_time, phase_plane, picture_of_run};
 pub use steady_picture::{

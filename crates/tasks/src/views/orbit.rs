@@ -3,7 +3,8 @@
 use super::diagram::axis_label;
 use super::heat_map::MOST_PANELS;
 use super::text::parameters_of;
-use crate::scene::{AnySystem, Column, Described, OrbitPlan, Quantity};
+use crate::scene::{AnySystem, Column, Described, OrbitDerivatives, OrbitPlan, Quantity};
+use twinslip::number::Uncertain;
 use twinslip::orbit::{Orbit, PhaseResponse};
 use twinslip_output::plot::{Axis, Drawing, Panel, PlotSeries};
 
@@ -147,6 +148,37 @@ fn multiplier_columns(i: usize) -> [Column<Orbit>; 4] {
         .meaning("kind of multiplier i: real, complex, or below floor where it is too small for its sign to be known")
         .not_in_table(),
     ]
+}
+
+/// The columns of the derivatives of one of the orbits, in the user's units, where there are any; the others have none.
+pub fn derivative_columns(
+    plan: &OrbitPlan,
+    of: &Orbit,
+    derivatives: &[OrbitDerivatives],
+) -> Vec<Column<Orbit>> {
+    let states = plan.system.states();
+    let column = |what: String, name: &str, slope: Option<Uncertain>| {
+        let period = of.period;
+        let of_it = move |orbit: &Orbit| slope.filter(|_| orbit.period == period).into();
+        Column::uncertain(format!("{what}_by_{name}"), Quantity::Number, of_it)
+            .meaning("derivative of it in the parameter")
+            .not_in_table()
+    };
+    let each = derivatives.iter().flat_map(|one| {
+        let name = &one.name;
+        let mut columns = vec![column("period".into(), name, Some(one.period))];
+        for (state, ends) in states.iter().zip(&one.extremes) {
+            for (end, slope) in ["min", "max"].into_iter().zip(ends) {
+                columns.push(column(format!("{state}_{end}"), name, Some(*slope)));
+            }
+        }
+        for (j, slope) in one.ln_abs.iter().enumerate() {
+            let what = format!("ln_abs_multiplier_{}", j + 1);
+            columns.push(column(what, name, *slope));
+        }
+        columns
+    });
+    each.collect()
 }
 
 /// The columns of the phase response.

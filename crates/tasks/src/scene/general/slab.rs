@@ -157,6 +157,25 @@ impl SlabSubject {
         }
     }
 
+    /// Over one parameter, in the variables of all interfaces and, of equal ones that move alike whatever its value, in those of one.
+    pub(in crate::scene) fn both(&self, name: &str) -> Result<(Family<'_>, Option<Family<'_>>)> {
+        let other = other_than(name);
+        let at = self.value(other)?.ln();
+        let held = |over: OverInterfaces| -> Family<'_> {
+            let family = Box::new(over);
+            Box::new(Held { at, family })
+        };
+        let whole = held(self.over([name, other])?);
+        let alike = match self.equal {
+            true => Some(held(OverInterfaces::alike(
+                &self.alike_interfaces(),
+                [name, other],
+            )?)),
+            false => None,
+        };
+        Ok((whole, alike))
+    }
+
     fn at(&self, values: &[(&str, f64)]) -> Result<UnequalInterfaces> {
         let mut interfaces = self.interfaces;
         for &(name, value) in values {
@@ -446,6 +465,9 @@ impl Subject for SlabSubject {
         Ok(self.shown(&profile))
     }
 }
+
+/// A family over the parameters of interfaces.
+pub(in crate::scene) type Family<'s> = Box<dyn ParametrisedField + 's>;
 
 /// A family of which the second coordinate is held.
 struct Held<'f> {

@@ -1,13 +1,15 @@
 //! A periodic orbit from options: which one, where the search begins, how accurately, and by which second method.
 
+mod derivatives;
 mod search;
 
 use super::any_system::AnySystem;
 use super::equations::Subspace;
 use super::instant::run_columns;
-use super::options::OrbitOptions;
+use super::options::{ModelOptions, OrbitOptions};
 use super::plan::{Plan, Sampling, equally_spaced, longest_in_words, stepping};
 use super::system::Described;
+pub use derivatives::OrbitDerivatives;
 use search::Search;
 use serde_json::Value;
 use twinslip::equilibrium::Symmetry;
@@ -39,6 +41,8 @@ pub struct OrbitPlan {
     pub rows: Option<Sampling>,
     /// At how many points the phase response is asked for.
     pub response: Option<usize>,
+    /// The parameters in which derivatives are asked for, and the options of the model.
+    derivatives: Option<(Vec<String>, ModelOptions)>,
     /// Whether the orbit is drawn.
     pub picture: bool,
 }
@@ -57,6 +61,9 @@ impl OrbitPlan {
                 "`phase_response` is of an orbit whose phase is free: under a periodic forcing no kick moves it".into(),
             ));
         }
+        let derivatives = options.derivatives.as_deref();
+        let derivatives = derivatives.map(|text| derivatives::names(text, &system));
+        let derivatives = derivatives.transpose()?;
         let rows = options.points.map(equally_spaced).transpose()?;
         let points = options.points.unwrap_or(RESPONSES);
         let response = options.phase_response.then_some(points);
@@ -67,6 +74,7 @@ impl OrbitPlan {
             second_is_asked: options.crosscheck.is_some(),
             rows: rows.filter(|_| response.is_none()),
             response,
+            derivatives: derivatives.map(|names| (names, options.model.clone())),
             picture: options.plot.is_some(),
             accuracy,
             system,
@@ -101,11 +109,23 @@ impl OrbitPlan {
             self.accuracy.tolerances.rtol,
             longest_in_words(self.accuracy.tolerances, self.system.units()),
             dense_output(self.rows, self.picture && self.response.is_none())
-        ) + &self.response.map_or_else(String::new, |points| {
+        ) + &self.explain_sensitivity()
+    }
+
+    /// The lines of what is asked for beside the orbit.
+    fn explain_sensitivity(&self) -> String {
+        let derivatives = self.derivatives.iter().map(|(names, _)| {
+            format!(
+                "\n  derivatives       in {}: of the period and the extremes by the linear equations of the orbit, of ln |mu| by extrapolated differences",
+                names.join(", ")
+            )
+        });
+        let response = self.response.iter().map(|points| {
             format!(
                 "\n  phase response    the adjoint of the tangents, at {points} points; uncertainties by noise and two more solutions"
             )
-        })
+        });
+        derivatives.chain(response).collect()
     }
 
     /// Finds the orbit.
@@ -210,6 +230,21 @@ impl OrbitPlan {
             max_steps: self.accuracy.max_steps,
             system: self.system.clone(),
         })
+    }
+
+    /// The derivatives of an orbit in the parameters that are asked for.
+    ///
+    /// # Errors
+    /// Those of [`sensitivity()`](twinslip::orbit::sensitivity).
+    pub fn derivatives(&self, orbit: &Orbit) -> Result<Vec<OrbitDerivatives>> {
+        let Some((names, model)) = &self.derivatives else {
+            return Ok(Vec::new());
+        };
+        let (accuracy, _) = self.accuracies(orbit);
+        let accuracy = (&accuracy, self.atol_is_given);
+        let of = (&self.system, model);
+        let one = |name: &String| derivatives::derivatives(&self.search, of, orbit, accuracy, name);
+        names.iter().map(one).collect()
     }
 
     /// The phase response along an orbit, in all states; `None` where it is not asked for.

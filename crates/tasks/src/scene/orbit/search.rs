@@ -240,7 +240,7 @@ impl Search {
 }
 
 /// An orbit in the units in which it was found.
-fn held(units: &MotionUnits, orbit: &Orbit) -> Result<Orbit> {
+pub(super) fn held(units: &MotionUnits, orbit: &Orbit) -> Result<Orbit> {
     let known = units.inward_orbit(orbit);
     match known.nodes.iter().flatten().all(|x| x.is_finite()) {
         true => Ok(known),
