@@ -114,6 +114,7 @@ mod page;
 mod parameters;
 mod parameters_by_name;
 mod periodic_schur;
+mod phase_response;
 mod pictures;
 mod points_met;
 mod polynomials;

@@ -380,6 +380,8 @@ class Commands:
         period_guess: Number = None,
         turns: Count = None,
         points: Count = None,
+        derivatives: Text = None,
+        phase_response: bool = False,
         crosscheck: Union[bool, str, None] = None,
         method: Text = None,
         rtol: Number = None,
@@ -410,6 +412,13 @@ class Commands:
             Rows over one period, as in integrate: N equally spaced in time, from
             result.orbit.point back to it. A table or CSV then holds these rows, and JSON has them
             as result.rows
+        derivatives : str, number or sequence, optional
+            Derivatives of the period, of the least and largest value of each state and of ln
+            abs(mu) of each multiplier in these parameters, comma-separated, as
+            result.orbit.derivatives
+        phase_response : bool, optional
+            Rows of the infinitesimal phase response over one period: the time by which a small
+            kick in each state advances the orbit, over the kick, at the ``points`` [default: 101]
         crosscheck : str, optional
             Second method that computes the orbit again as a cross-check, or none [default: cvode-
             adams; rodas5p in a build without SUNDIALS]

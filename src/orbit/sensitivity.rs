@@ -10,7 +10,7 @@
 use super::arc::{Arc, Tracer};
 use super::extremes::extremes;
 use super::family::ParametrisedField;
-use super::floquet::{Floquet, Kind, Multiplier, around, volume};
+use super::floquet::{Floquet, Kind, Multiplier, TANGENT as CLAIMED, around, volume};
 use super::linear::{Free, Linear};
 use super::no_orbit;
 use super::noise::{PROBES, Signs, TANGENT, graded};
@@ -295,7 +295,9 @@ fn logarithms(
             [Ok(above), Ok(below)] => {
                 let slopes = above.iter().zip(below.iter()).map(|(a, b)| {
                     let slope = (a.value - b.value) / (2.0 * farthest);
-                    let noise = (a.uncertainty + b.uncertainty) / (2.0 * farthest);
+                    // The differences between the levels show what is lost as well: once is enough of what bounds count several times.
+                    let bounds = a.uncertainty + b.uncertainty;
+                    let noise = bounds / (2.0 * farthest * CLAIMED);
                     (slope, noise)
                 });
                 found.push((farthest, slopes.collect()));

@@ -23,7 +23,7 @@ pub const COMMANDS: [&str; 8] = [
 ];
 
 /// Options of text that name no file, whatever the text.
-const TEXTS: [&str; 26] = [
+const TEXTS: [&str; 27] = [
     "along",
     "at",
     "at-driving",
@@ -33,6 +33,7 @@ const TEXTS: [&str; 26] = [
     "columns",
     "crosscheck",
     "curves",
+    "derivatives",
     "diagram",
     "draw",
     "driving",
