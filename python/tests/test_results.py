@@ -190,6 +190,23 @@ def test_own_systems_from_functions() -> None:
     assert abs(other.period.value - 6.6632868593) < 1e-8
 
 
+def test_functions_have_phase_responses_and_derivatives() -> None:
+    def van_der_pol(x, p):
+        return [x[1], p["mu"] * (1 - x[0] ** 2) * x[1] - x[0]]
+
+    system = System.from_function(van_der_pol, ["x", "y"], {"mu": 1.0}, start={"x": 2.0, "y": 0.0})
+    orbit = system.orbit(phase_response=True, points=9, derivatives=["mu"], crosscheck="none")
+    # Independent values of 20 digits.
+    slope = orbit.derivatives.period.mu
+    assert abs(slope.value - 0.73159659776592525374) <= slope.uncertainty < 1e-12
+    slope = orbit.derivatives.ln_abs[0].mu
+    assert abs(slope.value + 8.5762492205177319652) <= slope.uncertainty < 1e-9
+    assert orbit.phase[-1] == 1 and len(orbit.response_x) == 9
+    along = orbit.response_x * orbit.y
+    along += orbit.response_y * ((1 - orbit.x**2) * orbit.y - orbit.x)
+    assert np.abs(along - 1).max() < 1e-12
+
+
 def test_undecided_verdicts_are_told() -> None:
     with pytest.warns(twinslip.UndecidedWarning):
         # A few returns of a torus: it may yet be anything.

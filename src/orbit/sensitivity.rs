@@ -3,8 +3,8 @@
 //!
 //! The nodes and the period follow from the linear equations of the closed shooting, with the derivatives of the arcs' ends in the parameter on the
 //! right-hand side (the implicit function theorem); an extreme moves as the orbit does at the moment at which it is taken. Those of the
-//! multipliers have second derivatives of the flow in them: they are central differences of the arcs' maps between orbits moved along these derivatives to
-//! both sides, extrapolated to a step of nothing (Ridders, C. J. F. (1982). Accurate computation of F'(x) and F'(x) F''(x). Advances in Engineering
+//! multipliers have second derivatives of the flow in them: they are central differences between orbits at parameters to both sides, closed anew from where
+//! these derivatives say, extrapolated to a step of nothing (Ridders, C. J. F. (1982). Accurate computation of F'(x) and F'(x) F''(x). Advances in Engineering
 //! Software 4, 75-76).
 
 use super::arc::{Arc, Tracer};
@@ -63,6 +63,10 @@ const DEVIATIONS: f64 = 3.0;
 const FARTHEST: f64 = 0.05;
 const NEARER: f64 = 1.6;
 const LEVELS: usize = 7;
+/// How often there may be no orbit before one is found.
+const FAILURES: usize = 16;
+/// An orbit whose period is off by more, in parts of the change, is another one.
+const ELSEWHERE: f64 = 0.5;
 
 /// The derivatives of an orbit at these coordinates, in the parameter.
 ///
@@ -285,7 +289,7 @@ fn logarithms(
 ) -> Result<(Vec<Option<Uncertain>>, Vec<Uncertain>)> {
     let mut farthest = FARTHEST / motion.speed();
     let mut found: Vec<(f64, Vec<(f64, f64)>)> = Vec::new();
-    let mut failed = None;
+    let (mut failed, mut failures) = (None, 0);
     while found.len() < LEVELS {
         let mut both = [farthest, -farthest].map(|step| {
             let there = [at[0] + step, at[1]];
@@ -305,7 +309,9 @@ fn logarithms(
             [Err(error), _] | [_, Err(error)] => {
                 // Farther away there need be no orbit.
                 failed = Some(error.clone());
-                if !found.is_empty() || farthest < FARTHEST * f64::EPSILON {
+                farthest /= NEARER;
+                failures += 1;
+                if !found.is_empty() || failures > FAILURES {
                     break;
                 }
             }
@@ -329,8 +335,7 @@ fn logarithms(
     Ok((ln_abs.collect(), within))
 }
 
-/// The logarithms of the multipliers in the order of those that are known, and of those within clusters, with their noise, along the orbit moved by a
-/// step.
+/// The logarithms of the multipliers in the order of those that are known, and of those within clusters, with their noise, of the orbit a step away.
 fn beside(
     families: &Families<'_>,
     (at, step): ([f64; 2], f64),
@@ -338,13 +343,23 @@ fn beside(
     tracer: &mut Tracer,
     known: &Floquet,
 ) -> Result<Vec<Uncertain>> {
-    let shooting = motion
+    let moved = motion
         .shooting
         .moved(&motion.nodes, &motion.durations, step);
     let field = families.own.field(at);
-    let linear = motion
-        .linear
-        .beside(tracer, &field, &shooting, Free::NONE)?;
+    let (expected, known_period) = (moved.period(), motion.shooting.period());
+    // Not the linear motion itself: where a slow arc ends in a fast one, what is left to second order of its duration is as long as the fast one.
+    let closed = close(tracer, &field, moved)?;
+    let (shooting, linear) = (closed.shooting, closed.linear);
+    let off = (shooting.period() - expected).abs();
+    if off
+        > ELSEWHERE
+            * (expected - known_period)
+                .abs()
+                .max(step.abs() * expected.abs())
+    {
+        return Err(undetermined());
+    }
     let multipliers = match families.whole {
         None => around(&shooting.nodes, &linear, &field).multipliers,
         Some(whole) => {

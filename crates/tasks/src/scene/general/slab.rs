@@ -159,21 +159,18 @@ impl SlabSubject {
 
     /// Over one parameter, in the variables of all interfaces and, of equal ones that move alike whatever its value, in those of one.
     pub(in crate::scene) fn both(&self, name: &str) -> Result<(Family<'_>, Option<Family<'_>>)> {
-        let other = other_than(name);
-        let at = self.value(other)?.ln();
-        let held = |over: OverInterfaces| -> Family<'_> {
-            let family = Box::new(over);
-            Box::new(Held { at, family })
-        };
-        let whole = held(self.over([name, other])?);
-        let alike = match self.equal {
-            true => Some(held(OverInterfaces::alike(
-                &self.alike_interfaces(),
-                [name, other],
-            )?)),
-            false => None,
-        };
-        Ok((whole, alike))
+        let names = [name, other_than(name)];
+        let alike = || OverInterfaces::alike(&self.alike_interfaces(), names);
+        let alike = self.equal.then(alike).transpose()?;
+        let alike = alike.map(|over| self.held(over, names[1])).transpose()?;
+        Ok((self.held(self.over(names)?, names[1])?, alike))
+    }
+
+    fn held(&self, family: impl ParametrisedField + 'static, other: &str) -> Result<Family<'_>> {
+        Ok(Box::new(Held {
+            at: self.value(other)?.ln(),
+            family: Box::new(family),
+        }))
     }
 
     fn at(&self, values: &[(&str, f64)]) -> Result<UnequalInterfaces> {
@@ -299,10 +296,7 @@ impl Subject for SlabSubject {
             [first, second] => Box::new(self.over([first, second])?),
             [only] => {
                 let other = other_than(only);
-                Box::new(Held {
-                    at: self.value(other)?.ln(),
-                    family: Box::new(self.over([only, other])?),
-                })
+                self.held(self.over([only, other])?, other)?
             }
             _ => return Err(Error::Input("one parameter may vary, or two".into())),
         })
