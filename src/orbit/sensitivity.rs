@@ -22,6 +22,9 @@ use crate::field::Vector;
 use crate::integrate::Choice;
 use crate::number::Uncertain;
 
+/// ln |mu| within clusters of an orbit at these coordinates of the parameters.
+pub type WithinAt<'a> = &'a dyn Fn([f64; 2], &ShootingNodes) -> Result<Vec<f64>>;
+
 /// What an orbit's numbers change by with a parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sensitivity {
@@ -42,7 +45,7 @@ pub struct Families<'a> {
     /// Of an orbit in (tau, ln psi) of two interfaces that move alike, in the variables of both.
     pub whole: Option<&'a dyn ParametrisedField>,
     /// What the multipliers within clusters are at these coordinates along these nodes, where there are any.
-    pub within: Option<&'a dyn Fn([f64; 2], &ShootingNodes) -> Result<Vec<f64>>>,
+    pub within: Option<WithinAt<'a>>,
 }
 
 impl<'a> Families<'a> {
