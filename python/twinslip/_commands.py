@@ -122,7 +122,8 @@ class Model:
             with ``si``]
         modulate : str, number or sequence, optional
             Let driving or normal_stress vary, as its value times 1 + EPS cos(2 pi (t/PERIOD +
-            PHASE)); repeatable. For integrate, and for solve_ivp in Python
+            PHASE)); repeatable. For integrate, orbit, section, sweep, and branch and locus of
+            orbits
         normal_stress_coupling : float or str, optional
             Coefficient alpha of Linker and Dieterich (1992), for a normal stress sigma that
             varies: dtheta/dt has the term -(alpha theta/b) (dsigma/dt)/sigma [default: 0]
@@ -733,6 +734,7 @@ class Commands:
         starts: Count = None,
         seed: Count = None,
         follow: bool = False,
+        diagram: Text = None,
         curves: Text = None,
         threads: Count = None,
         rtol: Number = None,
@@ -788,6 +790,11 @@ class Commands:
         follow : bool, optional
             Start each point on the attractor found at the previous one along the first parameter:
             shorter transients, and hysteresis is visible
+        diagram : str, number or sequence, optional
+            Instead of regimes the values that this state comes back to on each attractor, a row
+            each: its local maxima, or under a periodic forcing its values at the phase 0 (of
+            ``surface`` phase=VALUE with ``system``). One period of what is periodic, 200 values of
+            what is not
         curves : str or sequence of str, optional
             Bifurcations to draw over the map, comma-separated, named as in locus, or none
             [default: none]
