@@ -106,10 +106,6 @@ fn diagrams_are_written_and_drawn() {
             "leave one of them out",
         ),
         (
-            "--grid c=2:3:2 --diagram x -o dots.parquet",
-            "not as Parquet",
-        ),
-        (
             "--grid c=2:3:2 --grid a=0.1:0.2:2 --diagram x --plot dots.svg",
             "over one parameter",
         ),

@@ -30,12 +30,14 @@ pub(super) fn numerics(options: &SweepOptions, grid: &[(&str, String)]) -> Value
         ("seed", json!(options.seed)),
         ("follow", json!(options.follow)),
         ("lyapunov", json!(options.lyapunov)),
-        ("diagram", json!(options.diagram)),
         ("rtol", json!(options.rtol)),
         ("max_returns", json!(options.max_returns)),
         ("max_steps", json!(options.max_steps)),
     ];
     pairs.extend(others.map(|(name, value)| (name.to_owned(), value)));
+    if let Some(state) = &options.diagram {
+        pairs.insert("diagram".to_owned(), json!(state));
+    }
     Value::Object(pairs)
 }
 
