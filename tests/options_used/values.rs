@@ -128,6 +128,10 @@ pub fn change(command: &str, kind: Kind, option: &str) -> Option<Change> {
             "rodas5p",
         ),
         "crosscheck" => To("rodas5p"),
+        "derivatives" => To(match system {
+            true => "r",
+            false => "stiffness",
+        }),
         // Where periods double is far along these branches: tests/any_parameter.rs.
         "doublings" if command == "branch orbits" => Exempt,
         "doublings" => To("1"),
@@ -196,6 +200,7 @@ pub fn change(command: &str, kind: Kind, option: &str) -> Option<Change> {
         ),
         "period-guess" if system => With("--start 1.9,1.5", "7.5"),
         "period-guess" => With("--start near-symmetric:0.1", "3"),
+        "phase-response" => To(""),
         "points" => To("7"),
         "program" => To("1:5"),
         "range" if system => To("r=24.5,26"),
