@@ -271,14 +271,14 @@ fn what_cannot_be_is_refused() {
         ),
         ("section --surface x=0", "phase=VALUE"),
         ("section --surface phase=1.5", "below 1"),
-        ("equilibria", "has no equilibria"),
+        ("equilibria", "no equilibria"),
         (
             "branch equilibria --along g --from 0 --to 1",
-            "has no equilibria",
+            "no equilibria",
         ),
         (
             "locus hopf --in w,g --range w=1:2 --range g=1:2",
-            "has no equilibria",
+            "no equilibria",
         ),
     ] {
         let ended = twinslip(&format!("{command} --system {path}"));

@@ -354,6 +354,8 @@ impl<'a> Guesses<'a> {
         /// Pieces of the run that are looked at, and of those that do not close how many are tried.
         const PIECES: usize = 400;
         const TRIED: usize = 5;
+        /// Nodes of a guess that rests.
+        const AT_REST: usize = 16;
         /// A piece nearly closes whose ends are nearer, in parts of how far each variable moves.
         const NEAR: f64 = 0.1;
         let field = self.space.field();
@@ -396,6 +398,22 @@ impl<'a> Guesses<'a> {
                 return Ok(());
             }
         }
+        // What answers a forcing beside an unstable state of rest is left by every run: all nodes begin there.
+        if let Some((place, turn)) = field.phase() {
+            let turns = (period * field.f(start)[place] / turn).round();
+            let node = |k: usize| {
+                let mut node = start.clone();
+                node[place] += turns * turn * k as f64 / AT_REST as f64;
+                node
+            };
+            let resting = ShootingNodes {
+                nodes: (0..AT_REST).map(node).collect(),
+                durations: vec![period / AT_REST as f64; AT_REST],
+            };
+            if self.closes_from(tracer, Ok(resting)) && self.goes_once(tracer, period) {
+                return Ok(());
+            }
+        }
         if matches!(self.otherwise, Some(Error::NotConverged { .. })) {
             self.otherwise = Some(no_orbit(
                 format!(
@@ -409,9 +427,11 @@ impl<'a> Guesses<'a> {
 
     /// The same as [`Self::closes`], of orbits that are no shorter one traversed several times.
     fn closes_once(&mut self, tracer: &mut Tracer, begin: &Vector, period: f64) -> bool {
-        if !self.closes(tracer, begin, period) {
-            return false;
-        }
+        self.closes(tracer, begin, period) && self.goes_once(tracer, period)
+    }
+
+    /// Whether the orbit found last is no shorter one traversed several times; else it is left out.
+    fn goes_once(&mut self, tracer: &mut Tracer, period: f64) -> bool {
         let found = self.closed.last().expect("one is closed");
         match traversals(tracer, self.space.field(), found) {
             Ok(Some(times)) => {
@@ -429,10 +449,14 @@ impl<'a> Guesses<'a> {
 
     /// Whether Newton's method on the cycle of this duration from this point leads to an orbit of the symmetry.
     fn closes(&mut self, tracer: &mut Tracer, begin: &Vector, period: f64) -> bool {
+        let guess = ShootingNodes::along(tracer, self.space.field(), begin, period);
+        self.closes_from(tracer, guess)
+    }
+
+    /// Whether Newton's method on these nodes does.
+    fn closes_from(&mut self, tracer: &mut Tracer, guess: Result<ShootingNodes>) -> bool {
         let field = self.space.field();
-        let closed = ShootingNodes::along(tracer, field, begin, period)
-            .and_then(|shooting| close(tracer, field, shooting));
-        match closed {
+        match guess.and_then(|shooting| close(tracer, field, shooting)) {
             Ok(closed) => self.take(closed.shooting),
             Err(error) => {
                 self.otherwise.get_or_insert(error);

@@ -398,7 +398,7 @@ fn model_change(command: &str, kind: Kind, option: &str) -> Option<Change> {
         "mass" => To(if si { "3.5e11" } else { "10" }),
         "modulate" => To("driving=0.1:5"),
         "normal-stress-coupling" => With(
-            "--modulate normal_stress=0.1:5 --normal-stress-coupling 0.1",
+            "--modulate normal_stress=0.01:5 --normal-stress-coupling 0.1",
             "0.3",
         ),
         // In numbers of SI, which these are not, runs take long: those of the kind in SI are made of them.

@@ -331,13 +331,16 @@ impl TextModel {
     /// # Errors
     /// [`Error::Input`] for a system with a forcing.
     pub(in crate::scene) fn may_rest(&self) -> Result<()> {
-        match self.system.phase() {
-            None => Ok(()),
-            Some(_) => Err(Error::Input(format!(
-                "{} is forced periodically, so it has no equilibria: look for its orbits (`orbit`, `branch orbits`) or its returns (`section`)",
-                self.name()
-            ))),
+        if self.system.phase().is_none() {
+            return Ok(());
         }
+        let (what, it) = match &self.slab {
+            Some(_) => ("`modulate` forces the interfaces".to_owned(), "they have"),
+            None => (format!("{} is forced", self.name()), "it has"),
+        };
+        Err(Error::Input(format!(
+            "{what} periodically, so {it} no equilibria: look for orbits (`orbit`, `branch orbits`) or returns (`section`)"
+        )))
     }
 
     /// The period of orbits that are looked for, where that is known: so many of a periodic forcing, or what is guessed.
