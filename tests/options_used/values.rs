@@ -397,8 +397,13 @@ fn model_change(command: &str, kind: Kind, option: &str) -> Option<Change> {
         // In units of 3.5e10 kg/m^2.
         "mass" => To(if si { "3.5e11" } else { "10" }),
         "modulate" => To("driving=0.1:5"),
-        "normal-stress-coupling" => With(
+        // Where it has an orbit of one period.
+        "normal-stress-coupling" if command == "orbit" => With(
             "--modulate normal_stress=0.01:5 --normal-stress-coupling 0.1",
+            "0.3",
+        ),
+        "normal-stress-coupling" => With(
+            "--modulate normal_stress=0.1:5 --normal-stress-coupling 0.1",
             "0.3",
         ),
         // In numbers of SI, which these are not, runs take long: those of the kind in SI are made of them.
