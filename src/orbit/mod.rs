@@ -12,6 +12,7 @@ pub(crate) mod cyclic;
 mod extremes;
 mod family;
 mod find;
+mod find_forced;
 mod find_from;
 mod find_unequal;
 pub(crate) mod floquet;

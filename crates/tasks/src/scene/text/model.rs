@@ -1,6 +1,7 @@
 //! A user-defined system with what the command line says about it.
 
-use super::file::{SystemFile, TIME, TimeUse};
+use super::file::SystemFile;
+use super::forcing::{TimeIs, is_periodic, no_period};
 use super::law_file::{DAMPING, DRIVING, LawFile, SCALES, STIFFNESS};
 use super::options::TextOptions;
 use super::slab::TextSlab;
@@ -17,7 +18,6 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use twinslip::error::{Error, Result, did_you_mean};
 use twinslip::field::Vector;
-use twinslip::friction::positive;
 use twinslip::integrate::AnyField;
 use twinslip::model::TextSystem;
 use twinslip::number::{Interval, Uncertain};
@@ -321,57 +321,6 @@ impl TextModel {
         Ok(Vector::from_vec(start))
     }
 
-    /// How many states there are without the phase of a forcing, which is the last and goes round and round.
-    pub(in crate::scene) fn moving(&self) -> usize {
-        self.system.states().len() - usize::from(self.system.phase().is_some())
-    }
-
-    /// That there may be equilibria: under a forcing nothing rests.
-    ///
-    /// # Errors
-    /// [`Error::Input`] for a system with a forcing.
-    pub(in crate::scene) fn may_rest(&self) -> Result<()> {
-        if self.system.phase().is_none() {
-            return Ok(());
-        }
-        let (what, it) = match &self.slab {
-            Some(_) => ("`modulate` forces the interfaces".to_owned(), "they have"),
-            None => (format!("{} is forced", self.name()), "it has"),
-        };
-        Err(Error::Input(format!(
-            "{what} periodically, so {it} no equilibria: look for orbits (`orbit`, `branch orbits`) or returns (`section`)"
-        )))
-    }
-
-    /// The period of orbits that are looked for, where that is known: so many of a periodic forcing, or what is guessed.
-    ///
-    /// # Errors
-    /// [`Error::Input`] for periods of a forcing where there is none, and for a guess where there is; [`Error::Parameter`] for a guess that is not positive.
-    pub(in crate::scene) fn period(
-        &self,
-        turns: Option<usize>,
-        guess: Option<f64>,
-    ) -> Result<Option<f64>> {
-        let Some(forcing) = self.system.forcing_period() else {
-            if let Some(turns) = turns {
-                return Err(not_forced(turns));
-            }
-            let guess = guess
-                .map(|period| positive("period-guess", period))
-                .transpose()?;
-            return Ok(guess.map(|period| self.units.inward(Quantity::Time, period)));
-        };
-        if guess.is_some() {
-            return Err(Error::Input(
-                "`period_guess`: orbits under a forcing last whole periods of it; say how many by `turns`".into(),
-            ));
-        }
-        match turns {
-            Some(0) => Err(Error::parameter("turns", 0, "at least 1")),
-            turns => Ok(Some(turns.unwrap_or(1) as f64 * forcing)),
-        }
-    }
-
     /// A box with the steady states of interfaces: what stress and states have at rates from a small part of V_H to all of it.
     pub(in crate::scene) fn steady_box(&self) -> Result<Vec<Interval>> {
         match &self.slab {
@@ -399,58 +348,6 @@ impl Described for TextModel {
     fn units(&self) -> &Units {
         &self.units
     }
-}
-
-/// What formulas that name time have in its place: that variable, or the phase of its period as a state.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum TimeIs {
-    Time,
-    Phase,
-}
-
-/// That periods of a forcing are counted where there is none.
-pub(in crate::scene) fn not_forced(turns: usize) -> Error {
-    Error::Input(format!(
-        "`turns` {turns} counts periods of a forcing, and nothing is forced here: give `modulate`, or a `system` whose formulas name {TIME}, with the key period"
-    ))
-}
-
-/// That a file names time, and no period of it.
-fn no_period(file: &str, TimeUse { formula, place }: &TimeUse) -> Error {
-    let (line, column) = place;
-    Error::Input(format!(
-        "{file}:{line}:{column}: {formula} names {TIME}, the time: only `integrate`, and solve_ivp in Python, take such a system, unless the file says of what period that is, as in period = \"2*pi/w\""
-    ))
-}
-
-/// That what depends on time has the period that is said.
-fn is_periodic(system: &TextSystem, start: &[Option<f64>]) -> Result<()> {
-    /// Phases that are looked at, and by how much rates a period apart may differ, of themselves.
-    const PHASES: [f64; 4] = [0.0, 0.137, 0.419, 0.781];
-    const SAME: f64 = 1e-8;
-    let period = system.forcing_period().unwrap_or(f64::NAN);
-    if !(period.is_finite() && period > 0.0) {
-        let must = "positive and finite";
-        return Err(Error::parameter("the period of the system", period, must));
-    }
-    let at = |phase: f64| {
-        let states = start[..start.len() - 1].iter();
-        let states = states.map(|x| x.filter(|x| *x != 0.0).unwrap_or(0.5));
-        system.rates(&states.chain([phase]).collect::<Vec<f64>>())
-    };
-    for phase in PHASES {
-        let pairs = at(phase).into_iter().zip(at(phase + 1.0));
-        for ((now, later), state) in pairs.zip(system.states()) {
-            // Outside its domain a formula says nothing.
-            if (now - later).abs() > SAME * (now.abs() + later.abs()) + f64::MIN_POSITIVE {
-                return Err(Error::Input(format!(
-                    "the period of the system, {period}, is none: the rate of {state} is {now} at {TIME} = {} and {later} a period later",
-                    phase * period
-                )));
-            }
-        }
-    }
-    Ok(())
 }
 
 /// A finite number.

@@ -1,9 +1,10 @@
 //! Interfaces whose friction law is from a file, and what the options say about them.
 
 use super::file::PHASE;
+use super::forcing::TimeIs;
 use super::friction::Friction;
 use super::law_file::{DRIVING, LawFile, STIFFNESS};
-use super::model::{TimeIs, number};
+use super::model::number;
 use super::slab_options::{Own, counts, damped, extended, parameters, unit_of_stress, units};
 use super::sliding::{Sliding, StateLayout};
 use crate::scene::options::{ModelOptions, SlabOptions};
