@@ -169,7 +169,7 @@ fn mistakes_are_told_by_line_and_column() {
         (changed("z = 0.0", "w = 0.0"), "16:1: \"w\" is no state"),
         (
             changed("[where]", "[were]"),
-            "11:2: unknown key \"were\", there are name, states, parameters, rates, where, start; did you mean \"where\"?",
+            "11:2: unknown key \"were\", there are name, states, parameters, period, rates, where, start; did you mean \"where\"?",
         ),
         (
             changed("name = \"Roessler\"\n", ""),
