@@ -33,6 +33,10 @@ def test_solve_ivp_is_integrate():
         assert solved.y[1, -1] == pytest.approx(run["state_1"][-1], rel=1e-8)
 
 
-def test_what_varies_in_time_has_no_orbit():
+def test_what_varies_in_time_has_orbits_of_its_period_and_no_equilibria():
+    varied = of(stiffness=2, modulate=["driving=0.1:3"])
+    orbit = varied.orbit(crosscheck="none")
+    assert orbit.result["orbit"]["turns"] == 1
+    assert orbit.period.value == pytest.approx(3, rel=1e-14)
     with pytest.raises(ValueError, match="modulate"):
-        of(stiffness=2, modulate=["driving=0.1:3"]).orbit()
+        varied.equilibria()
