@@ -1,7 +1,7 @@
 //! Systems whose formulas name time with a period: orbits of whole periods, branches, curves, sections and sweeps, against references of thirty
 //! digits.
 
-use crate::command::{folder, number, object, refused_in_one_line, twinslip};
+use crate::command::{folder, number, object, object_or_undecided, refused_in_one_line, twinslip};
 use crate::common::{self, data};
 use serde_json::Value;
 use std::fmt::Write;
@@ -255,6 +255,22 @@ fn sweeps_count_the_periods_of_the_forcing() {
     let orbit = &orbit["result"]["orbit"];
     assert_eq!(orbit["turns"], 5);
     assert_eq!(orbit["verdict"], "stable");
+}
+
+/// A rate that is 0 at the phase 0, and a rounding a period later, has that period.
+#[test]
+fn rates_that_vanish_have_their_period() {
+    let path = written(
+        "name = \"n\"\nstates = [\"x\", \"y\"]\nperiod = \"2*pi/w\"\n[parameters]\nw = 2\n[rates]\nx = \"y\"\ny = \"sin(w*t) - 0*x\"\n[start]\nx = 0.3\ny = -0.5\n",
+    );
+    let made = object_or_undecided(&format!("section --system {path} --returns 3"));
+    let rows = made["result"]["rows"].as_array().expect("rows");
+    // y = -cos(2 t)/2 returns to its start.
+    assert!(
+        rows.iter()
+            .all(|row| (number(row, "/y") + 0.5).abs() < 1e-6),
+        "{rows:?}"
+    );
 }
 
 #[test]

@@ -88,6 +88,13 @@ impl<'a> AnyField<'a> {
         self.0.phase()
     }
 
+    /// The period of the forcing, where there is one.
+    pub fn forcing_period(&self) -> Option<f64> {
+        let (place, turn) = self.phase()?;
+        // The same at all states.
+        Some(turn / self.f(&Vector::zeros(self.dimension()))[place])
+    }
+
     /// The state whole turns of the forcing away that is nearest to another.
     pub fn turned(&self, mut x: Vector, to: &Vector) -> Vector {
         if let Some((place, turn)) = self.phase() {

@@ -135,9 +135,8 @@ fn extremes_by(
         begin += duration;
     }
     // What a phase goes through is known: whole turns.
-    if let Some((place, turn)) = field.phase() {
-        let goes = begin * field.f(&shooting.nodes[0])[place];
-        all.ranges[place] = (0.0, (goes / turn).round() * turn);
+    if let (Some((place, turn)), Some(period)) = (field.phase(), field.forcing_period()) {
+        all.ranges[place] = (0.0, (begin / period).round() * turn);
     }
     Ok(all)
 }

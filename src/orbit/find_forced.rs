@@ -62,10 +62,10 @@ impl Guesses<'_> {
         }
         // What answers a forcing beside an unstable state of rest is left by every run: all nodes begin there.
         if let Some((place, turn)) = field.phase() {
-            let turns = (period * field.f(start)[place] / turn).round();
+            let turns = period / field.forcing_period().unwrap_or(period);
             let node = |k: usize| {
                 let mut node = start.clone();
-                node[place] += turns * turn * k as f64 / AT_REST as f64;
+                node[place] += turns.round() * turn * k as f64 / AT_REST as f64;
                 node
             };
             let resting = ShootingNodes {

@@ -67,11 +67,9 @@ fn find_by(
         symmetry: Symmetry::Symmetric,
     };
     let mut guesses = Guesses::new(&space, Symmetry::Symmetric);
+    let period = period.or_else(|| field.forcing_period());
     match period {
-        _ if field.phase().is_some() => {
-            let period = period.or_else(|| forcing_period(field, start));
-            guesses.forced(period.unwrap_or(f64::NAN), &mut tracer, start)?;
-        }
+        Some(period) if field.phase().is_some() => guesses.forced(period, &mut tracer, start)?,
         Some(period) => guesses.over(period, &mut tracer, start)?,
         None => {
             let rough = rough_period(&mut tracer, field, start)?;
@@ -86,8 +84,7 @@ fn find_by(
             )
         }));
     }
-    let whole_cycle = period.is_some() || field.phase().is_some();
-    let found = completed(guesses, None, accuracy, whole_cycle)?;
+    let found = completed(guesses, None, accuracy, period.is_some())?;
     if !found.orbit.in_family {
         return Ok(found);
     }
@@ -103,12 +100,6 @@ fn find_by(
         },
         _ => found,
     })
-}
-
-/// The period of a periodic forcing.
-fn forcing_period(field: &AnyField<'_>, y: &Vector) -> Option<f64> {
-    let (place, turn) = field.phase()?;
-    Some(turn / field.f(y)[place])
 }
 
 /// What an implicit step takes, in steps of Taylor's method.

@@ -31,10 +31,8 @@ impl Classifier {
             Some(period) => (period * ONCE, usize::MAX),
             None => (f64::INFINITY, MOST),
         };
-        match run.surface.turn {
-            Some(turn) => {
-                let place = run.surface.normal.iamax();
-                let period = turn / run.field.f(start)[place];
+        match run.field.forcing_period() {
+            Some(period) => {
                 let count = told.row.returns_per_period.unwrap_or(MOST);
                 self.once_a_period(run, start, (period, count), &outward)
             }

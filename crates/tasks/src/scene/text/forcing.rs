@@ -85,7 +85,7 @@ pub(super) fn no_period(file: &str, TimeUse { formula, place }: &TimeUse) -> Err
 
 /// That what depends on time has the period that is said.
 pub(super) fn is_periodic(system: &TextSystem, start: &[Option<f64>]) -> Result<()> {
-    /// Phases that are looked at, and by how much rates a period apart may differ, of themselves.
+    /// Phases that are looked at, and by how much rates a period apart may differ, as a part of the largest.
     const PHASES: [f64; 4] = [0.0, 0.137, 0.419, 0.781];
     const SAME: f64 = 1e-8;
     let period = system.forcing_period().unwrap_or(f64::NAN);
@@ -98,14 +98,21 @@ pub(super) fn is_periodic(system: &TextSystem, start: &[Option<f64>]) -> Result<
         let states = states.map(|x| x.filter(|x| *x != 0.0).unwrap_or(0.5));
         system.rates(&states.chain([phase]).collect::<Vec<f64>>())
     };
-    for phase in PHASES {
-        let pairs = at(phase).into_iter().zip(at(phase + 1.0));
-        for ((now, later), state) in pairs.zip(system.states()) {
+    let rates = PHASES.map(|phase| [at(phase), at(phase + 1.0)]);
+    for (i, state) in system.states().iter().enumerate() {
+        // Of the largest rate at any phase: at some it may be 0 but for rounding.
+        let size = rates
+            .iter()
+            .flatten()
+            .fold(0.0_f64, |most, all| most.max(all[i].abs()));
+        for (phase, [now, later]) in PHASES.into_iter().zip(&rates) {
             // Outside its domain a formula says nothing.
-            if (now - later).abs() > SAME * (now.abs() + later.abs()) + f64::MIN_POSITIVE {
+            if (now[i] - later[i]).abs() > SAME * size {
                 return Err(Error::Input(format!(
-                    "the period of the system, {period}, is none: the rate of {state} is {now} at {TIME} = {} and {later} a period later",
-                    phase * period
+                    "the period of the system, {period}, is none: the rate of {state} is {} at {TIME} = {} and {} a period later",
+                    now[i],
+                    phase * period,
+                    later[i]
                 )));
             }
         }
