@@ -25,8 +25,6 @@ impl Diagram {
         let Some(name) = &options.diagram else {
             return Ok(None);
         };
-        let is_parquet =
-            |path: &std::path::PathBuf| path.extension().is_some_and(|end| end == "parquet");
         let others = [
             ("basin", options.basin),
             ("resume", options.resume.is_some()),
@@ -37,11 +35,6 @@ impl Diagram {
             return Err(Error::Input(format!(
                 "`diagram` has rows of values on attractors, and `{other}` is of rows of regimes; leave one of them out"
             )));
-        }
-        if options.output.output.as_ref().is_some_and(is_parquet) {
-            return Err(Error::Input(
-                "`diagram` is written as CSV or JSON, not as Parquet".into(),
-            ));
         }
         let (names, phase) = match system {
             Swept::Interfaces(system) => {
