@@ -177,13 +177,16 @@ def test_the_notebook_stays_as_it_is(notebook):
 def test_its_theme_is_that_of_the_notebook(notebook):
     page = notebook(SLAB)
     page.answered("equilibria")
-    scheme = "getComputedStyle(document.querySelector('.twinslip')).colorScheme"
-    assert page.page.evaluate(scheme) == "light"
-    page.page.evaluate("document.body.dataset.jpThemeLight = 'false'")
-    for _ in range(3):
-        page.page.get_by_role("button", name="Theme").click()
-    assert page.page.get_by_role("button", name="Theme").inner_text() == "Theme: auto"
-    assert page.page.evaluate(scheme) == "dark"
+    theme = page.page.get_by_role("button", name="Theme")
+    scheme = lambda: page.page.evaluate("getComputedStyle(document.querySelector('.twinslip')).colorScheme")
+    # A notebook that doesn't say leaves it to the browser.
+    assert scheme() == "light dark"
+    for is_light, expected in [("false", "dark"), ("true", "light")]:
+        page.page.evaluate(f"document.body.dataset.jpThemeLight = '{is_light}'")
+        for _ in range(3):
+            theme.click()
+        assert theme.inner_text() == "Theme: auto"
+        assert scheme() == expected
 
 
 def test_columns_follow_the_width_of_the_cell(notebook):
