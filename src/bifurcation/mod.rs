@@ -4,6 +4,7 @@
 
 pub mod equilibria;
 pub mod general;
+mod homoclinic;
 pub mod orbits;
 mod request;
 pub mod strong_resonance;
@@ -63,11 +64,39 @@ pub enum Label {
     Zh,
     /// The largest K of a curve.
     Top,
+    /// Homoclinic orbits to a neutral saddle, saddle-focus or bi-focus: the saddle quantity is zero.
+    Nss,
+    /// See [`Label::Nss`].
+    Nsf,
+    /// See [`Label::Nss`].
+    Nff,
+    /// The two leading stable eigenvalues are equal.
+    Drs,
+    /// The two leading unstable eigenvalues are equal.
+    Dru,
+    /// Of the three leading stable eigenvalues all have the same real part.
+    Tls,
+    /// The same of the unstable ones.
+    Tlu,
+    /// The divergence is zero in the leading directions of a saddle-focus, of which a pair is stable.
+    Nds,
+    /// The same where it is unstable.
+    Ndu,
+    /// Orbit flip: the orbit arrives along another direction than the leading one.
+    Ofs,
+    /// Orbit flip: the orbit leaves along another direction than the leading one.
+    Ofu,
+    /// Inclination flip of the stable manifold.
+    Ifs,
+    /// Inclination flip of the unstable manifold.
+    Ifu,
+    /// A non-central homoclinic orbit to a saddle-node: one end of the curve of orbits that are homoclinic to a saddle.
+    Nch,
 }
 
 impl Label {
     /// All, in the order of their declaration.
-    pub const ALL: [Label; 22] = [
+    pub const ALL: [Label; 36] = [
         Label::Bp,
         Label::Lp,
         Label::Hb,
@@ -90,6 +119,20 @@ impl Label {
         Label::Bt,
         Label::Zh,
         Label::Top,
+        Label::Nss,
+        Label::Nsf,
+        Label::Nff,
+        Label::Drs,
+        Label::Dru,
+        Label::Tls,
+        Label::Tlu,
+        Label::Nds,
+        Label::Ndu,
+        Label::Ofs,
+        Label::Ofu,
+        Label::Ifs,
+        Label::Ifu,
+        Label::Nch,
     ];
 
     /// The bifurcations of one parameter.
@@ -133,6 +176,20 @@ impl Label {
             Label::Bt => "BT",
             Label::Zh => "ZH",
             Label::Top => "TOP",
+            Label::Nss => "NSS",
+            Label::Nsf => "NSF",
+            Label::Nff => "NFF",
+            Label::Drs => "DRS",
+            Label::Dru => "DRU",
+            Label::Tls => "TLS",
+            Label::Tlu => "TLU",
+            Label::Nds => "NDS",
+            Label::Ndu => "NDU",
+            Label::Ofs => "OFS",
+            Label::Ofu => "OFU",
+            Label::Ifs => "IFS",
+            Label::Ifu => "IFU",
+            Label::Nch => "NCH",
         }
     }
 
@@ -161,6 +218,20 @@ impl Label {
             Label::Bt => "Bogdanov-Takens",
             Label::Zh => "zero-Hopf",
             Label::Top => "largest stiffness",
+            Label::Nss => "neutral saddle",
+            Label::Nsf => "neutral saddle-focus",
+            Label::Nff => "neutral bi-focus",
+            Label::Drs => "double real stable eigenvalues",
+            Label::Dru => "double real unstable eigenvalues",
+            Label::Tls => "three leading stable eigenvalues",
+            Label::Tlu => "three leading unstable eigenvalues",
+            Label::Nds => "neutrally divergent saddle-focus, stable",
+            Label::Ndu => "neutrally divergent saddle-focus, unstable",
+            Label::Ofs => "orbit flip, stable",
+            Label::Ofu => "orbit flip, unstable",
+            Label::Ifs => "inclination flip, stable",
+            Label::Ifu => "inclination flip, unstable",
+            Label::Nch => "non-central homoclinic to a saddle-node",
         }
     }
 }
@@ -471,6 +542,8 @@ pub enum LocusKind {
     PeriodDoubling,
     /// Torus bifurcations.
     Torus,
+    /// Homoclinic orbits; these are followed as those of any system.
+    Homoclinic,
 }
 
 /// A curve that is asked for.

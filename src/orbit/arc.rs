@@ -274,7 +274,7 @@ impl Tracer {
     ///
     /// # Errors
     /// Those of [`AnyIntegrator::arcs`].
-    pub(super) fn arcs<'f>(
+    pub(crate) fn arcs<'f>(
         &'f mut self,
         field: &'f AnyField<'_>,
         free: &'f [usize],
@@ -345,7 +345,7 @@ impl Tracer {
 }
 
 /// What makes arcs of one field, one after the other.
-pub(super) struct Arcs<'f> {
+pub(crate) struct Arcs<'f> {
     made: DerivativesAlongArcs<'f>,
     step_error: f64,
     bound: &'f mut WorkBound,

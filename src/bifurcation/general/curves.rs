@@ -9,6 +9,7 @@ use crate::bifurcation::Label;
 use crate::bifurcation::equilibria::generic_curve::{
     EquilibriumBifurcation, EquilibriumCurve, EquilibriumCurvePoint, FirstCoordinate,
 };
+use crate::bifurcation::homoclinic::homoclinic_curves;
 use crate::continuation::{Settings, Stop};
 use crate::error::Result;
 use crate::field::{Matrix, Vector};
@@ -384,6 +385,7 @@ impl GeneralCurve<'_> {
             GeneralBifurcation::Orbit(test_function) => {
                 super::orbit_curves(self, test_function, seen)
             }
+            GeneralBifurcation::Homoclinic => homoclinic_curves(self, seen),
         }
     }
 }

@@ -122,6 +122,8 @@ pub struct GeneralCurve<'a> {
     pub at: [Vec<f64>; 2],
     /// An orbit with its coordinates, where one is known.
     pub orbit: Option<ContinuationPoint>,
+    /// The coordinates of the system's own values, where it has such in the ranges: where homoclinic orbits are looked for first.
+    pub own: Option<[f64; 2]>,
     /// Where curves of orbits begin, where that is known otherwise than from branches of orbits.
     pub seeds: Option<&'a dyn OrbitSeeds>,
     /// For two equal parts: orbits of one symmetry, or of both.
@@ -161,6 +163,8 @@ pub enum GeneralBifurcation {
     Equilibrium(EquilibriumBifurcation),
     /// Orbits.
     Orbit(TestFunction),
+    /// Homoclinic orbits, in all of their points.
+    Homoclinic,
 }
 
 /// What is found at a point.

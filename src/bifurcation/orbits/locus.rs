@@ -226,6 +226,7 @@ impl LocusRequest {
                 beyond: ranges,
                 at: [all(&self.at_driving), all(&self.at_stiffness)],
                 orbit: None,
+                own: None,
                 seeds: Some(seeds),
                 symmetry: self.symmetry,
                 criticality: match self.criticality {

@@ -247,7 +247,8 @@ impl LocusOptions {
         let names = plane(self.plane.as_deref().unwrap_or("driving,stiffness"))?;
         let system = System::new(&self.reference()?)?;
         let loading = names.contains(&"driving") && names.contains(&"stiffness");
-        if system.unequal.is_none() && loading {
+        let homoclinic = self.of.as_deref() == Some("homoclinic");
+        if system.unequal.is_none() && loading && !homoclinic {
             return Ok(None);
         }
         let search = &self.search;

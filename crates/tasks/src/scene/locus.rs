@@ -38,7 +38,7 @@ const fn curve(
     }
 }
 
-const CURVES: [CurveChoice; 7] = [
+const CURVES: [CurveChoice; 8] = [
     curve(
         "pitchfork",
         "pitchforks of equilibria",
@@ -71,6 +71,12 @@ const CURVES: [CurveChoice; 7] = [
         true,
     ),
     curve("torus", "torus bifurcations", LocusKind::Torus, true),
+    curve(
+        "homoclinic",
+        "homoclinic orbits",
+        LocusKind::Homoclinic,
+        true,
+    ),
 ];
 
 /// A curve that is asked for, checked.
@@ -116,7 +122,7 @@ impl CurveChoice {
             LocusKind::Pitchfork => broken,
             LocusKind::OrbitPitchfork => broken_by_orbits,
             LocusKind::SaddleNode => folds,
-            LocusKind::Hopf | LocusKind::OrbitSaddleNode => variables > 1,
+            LocusKind::Hopf | LocusKind::OrbitSaddleNode | LocusKind::Homoclinic => variables > 1,
             LocusKind::PeriodDoubling | LocusKind::Torus => variables > 2,
         };
         CURVES

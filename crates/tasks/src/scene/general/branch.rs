@@ -96,6 +96,7 @@ impl<'s> GeneralBranchPlan<'s> {
             kind: RowKind {
                 orbits,
                 curve: false,
+                homoclinic: false,
             },
             subject,
             free,

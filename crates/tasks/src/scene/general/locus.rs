@@ -97,6 +97,7 @@ impl<'s> GeneralLocusPlan<'s> {
             "orbit-saddle-node" => GeneralBifurcation::Orbit(TestFunction::Fold),
             "period-doubling" => GeneralBifurcation::Orbit(TestFunction::Doubling),
             "torus" => GeneralBifurcation::Orbit(TestFunction::Torus),
+            "homoclinic" => GeneralBifurcation::Homoclinic,
             other => {
                 return Err(Error::Input(format!(
                     "a curve of {other} needs a symmetry, and this system is not known to have one; follow saddle-node or orbit-saddle-node"
@@ -162,7 +163,8 @@ impl<'s> GeneralLocusPlan<'s> {
             Free::new(subject, ("in", names[i]), range, &at)
         };
         let free = [free(0)?, free(1)?];
-        let orbits = matches!(bifurcation, GeneralBifurcation::Orbit(_));
+        let homoclinic = bifurcation == GeneralBifurcation::Homoclinic;
+        let orbits = homoclinic || matches!(bifurcation, GeneralBifurcation::Orbit(_));
         match options.search.start.is_some() && orbits {
             true => following::starts_at(&options.model, &names)?,
             false => following::varies(&options.model, &names)?,
@@ -186,8 +188,9 @@ impl<'s> GeneralLocusPlan<'s> {
         Ok(GeneralLocusPlan {
             choice,
             kind: RowKind {
-                orbits,
+                orbits: orbits && !homoclinic,
                 curve: true,
+                homoclinic,
             },
             bifurcation,
             subject,
@@ -210,6 +213,9 @@ impl<'s> GeneralLocusPlan<'s> {
             )
         });
         let method = match self.kind.orbits {
+            _ if self.kind.homoclinic => {
+                "taylor, tangents on, multiple shooting between the tangent spaces of the saddle's manifolds, both parameters unknown"
+            }
             true => "taylor, tangents on, multiple shooting, both parameters unknown",
             false => {
                 "the equilibrium with the condition of the bifurcation, both parameters unknown; nothing is integrated"
@@ -276,12 +282,14 @@ impl<'s> GeneralLocusPlan<'s> {
             self.subject
                 .equilibria(&[(names[0], value(0)), (names[1], value(1))])
         };
-        let mut orbit = None;
-        if self.kind.orbits {
+        let (mut orbit, mut own_place) = (None, None);
+        if self.kind.orbits || self.kind.homoclinic {
             let own = [self.subject.value(names[0]), self.subject.value(names[1])];
             // Without values of their own there is no orbit either.
             if let [Ok(first), Ok(second)] = own {
                 let values = [(names[0], first), (names[1], second)];
+                own_place =
+                    Some([0, 1].map(|i| self.free[i].coordinate.inward([first, second][i])));
                 orbit = self.subject.orbit(&values)?;
                 // Where nothing rests there is no Hopf point to begin at.
                 if orbit.is_none() && !self.subject.may_rest() {
@@ -309,6 +317,7 @@ impl<'s> GeneralLocusPlan<'s> {
             beyond: self.free.each_ref().map(Free::beyond),
             at: self.free.each_ref().map(Free::landings),
             orbit,
+            own: own_place,
             seeds: None,
             symmetry: None,
             criticality: match self.criticality {

@@ -22,6 +22,8 @@ pub struct RowKind {
     pub orbits: bool,
     /// Of a curve in the plane of two parameters, or of a branch along one.
     pub curve: bool,
+    /// Of homoclinic orbits, each told by its equilibrium.
+    pub homoclinic: bool,
 }
 
 /// What a branch of orbits ends at, that is no homoclinic orbit to a saddle.
@@ -136,6 +138,15 @@ impl GeneralRow {
         })
     }
 
+    /// The real part of the eigenvalue nearest to the axis on either side of it, added.
+    pub fn saddle_quantity(&self) -> Option<f64> {
+        let side = |sign: f64| {
+            let own = self.eigenvalues.iter().map(|z| sign * z.re);
+            own.filter(|re| *re > 0.0).reduce(f64::min)
+        };
+        Some(side(1.0)? - side(-1.0)?)
+    }
+
     /// What its label means; where a cluster of more than two splits that is no pitchfork.
     pub fn meaning(&self) -> Option<&'static str> {
         match self.label? {
@@ -171,10 +182,13 @@ impl GeneralRow {
         let period = Column::new("period", Time, |row: &Row| {
             row.period.map(|period| period.value).into()
         });
-        if kind.curve || kind.orbits {
+        if kind.homoclinic {
+            columns.push(saddle_quantity());
+        } else if kind.curve || kind.orbits {
             columns.push(period);
         }
-        if kind.curve {
+        if kind.homoclinic {
+        } else if kind.curve {
             columns.push(Column::new("angle_over_pi", Number, |row: &Row| {
                 row.angle_over_pi.into()
             }));
@@ -334,6 +348,13 @@ fn oscillation(family: &dyn ParametrisedField, point: &GeneralPoint) -> Option<[
     let frequency = Complex::new(0.0, TAU / point.period?.value);
     let q = eigenvector(&family.field(point.at).jacobian(state), frequency)?;
     Some([q.map(|z| z.re), q.map(|z| z.im)])
+}
+
+/// The sum of the real parts of the leading eigenvalues at the equilibrium of a homoclinic orbit.
+fn saddle_quantity() -> Column<GeneralRow> {
+    Column::new("saddle_quantity", Quantity::Growth, |row: &GeneralRow| {
+        row.saddle_quantity().into()
+    })
 }
 
 fn criticality() -> Column<GeneralRow> {
