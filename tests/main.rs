@@ -76,6 +76,7 @@ mod golden;
 mod growing_periods;
 #[cfg(unix)]
 mod guide;
+mod homoclinic;
 mod invariant_planes;
 mod ivp;
 mod ivp_events;

@@ -1,6 +1,6 @@
 //! A connection from a periodic orbit that passes near a saddle.
 
-use super::connection::{Condition, Connection, Frame, Solver};
+use super::connection::{Condition, Connection, Frame, Solver, extents};
 use super::curve::HomoclinicPoint;
 use super::saddle::{Kind, Side, Singular, Splitting};
 use crate::error::Result;
@@ -22,6 +22,8 @@ const AGAIN: f64 = 3.0;
 const LINEAR: f64 = 0.3;
 /// ln of what arcs near the equilibrium grow by.
 const GROWTH: f64 = 4.0;
+/// The ends of arcs that are joined are no farther apart, in parts of the extent of the orbit.
+const FAR: f64 = 0.1;
 
 /// An orbit seen at many places in time.
 struct Seen {
@@ -37,11 +39,8 @@ impl Solver<'_> {
         let mut at = orbit.at;
         let field = self.family.field(at);
         let (seen, period) = seen(&field, &orbit.shooting)?;
-        let places = || seen.iter().map(|one| &one.place);
-        let first = seen[0].place.clone();
-        let most = places().fold(first.clone(), |a, x| a.sup(x));
-        self.frame.sizes =
-            (most - places().fold(first, |a, x| a.inf(x))).map(|x| x.max(f64::MIN_POSITIVE));
+        self.frame.sizes = extents(seen.iter().map(|one| &one.place));
+        self.frame.first = self.frame.sizes.clone();
         let sizes = self.frame.sizes.clone();
         let speed = |one: &&Seen| field.f(&one.place).component_div(&sizes).amax();
         let slowest = seen.iter().min_by(|a, b| speed(a).total_cmp(&speed(b)))?;
@@ -208,12 +207,12 @@ impl Solver<'_> {
     /// The homoclinic orbit near an orbit, at the value of one of its parameters, in the direction in which that grows; `None` where there is none.
     pub fn first(&mut self, orbit: &ContinuationPoint, held: usize) -> Option<HomoclinicPoint> {
         let guess = self.opened(orbit, 1 - held)?;
-        let planes = {
+        let places = {
             let field = self.family.field(guess.at);
-            guess.planes(&field, &self.frame)
+            guess.places(&field, &self.frame)
         };
         let condition = Condition::Parameter(held, orbit.at[held]);
-        let solved = self.correct(guess, &planes, &condition).ok()?;
+        let solved = self.correct(guess, &places, &condition).ok()?;
         let layout = solved.connection.layout();
         let mut along = Vector::zeros(layout.count());
         along[layout.parameter(held)] = 1.0;
@@ -231,7 +230,8 @@ impl Solver<'_> {
         for (k, (&duration, growth)) in old.durations.iter().zip(growths).enumerate() {
             let growth = growth.max(0.0);
             let parts = (growth / GROWTH).ceil().max(1.0);
-            if time > 0.0 && (grown + growth > GROWTH) {
+            let way = (&old.nodes[k + 1] - &nodes[nodes.len() - 1]).component_div(&old.sizes());
+            if time > 0.0 && (grown + growth > GROWTH || way.amax() > FAR) {
                 nodes.push(old.nodes[k].clone());
                 durations.push(time);
                 (time, grown) = (0.0, 0.0);
@@ -265,6 +265,7 @@ impl Frame {
         const BY_CENTRE: f64 = 0.02;
         Frame {
             sizes: Vector::from_element(dimension, 1.0),
+            first: Vector::from_element(dimension, 1.0),
             widths: ranges.map(|(a, b)| (b - a).abs()),
             radii: match kind {
                 Kind::Saddle => [RADIUS; 2],

@@ -23,11 +23,27 @@ pub(super) struct Connection {
     pub at: [f64; 2],
 }
 
+/// What points go through in each variable. One that does not move has no size of its own, but that of the errors of integrators.
+pub(super) fn extents<'p>(points: impl Iterator<Item = &'p Vector>) -> Vector {
+    const STILL: f64 = 1e-9;
+    let both = points.fold(None, |both: Option<[Vector; 2]>, x| match both {
+        None => Some([x.clone(), x.clone()]),
+        Some([least, most]) => Some([least.inf(x), most.sup(x)]),
+    });
+    let Some([least, most]) = both else {
+        return Vector::zeros(0);
+    };
+    let extent = |a: f64, b: f64| (b - a).max(STILL * (1.0 + a.abs().max(b.abs())));
+    least.zip_map(&most, extent)
+}
+
 /// In what units a connection is measured.
 #[derive(Debug, Clone)]
 pub(super) struct Frame {
     /// Of the variables: what the orbit goes through.
     pub sizes: Vector,
+    /// What these were at first.
+    pub first: Vector,
     /// Of the parameters: the widths of their ranges.
     pub widths: [f64; 2],
     /// How far from the equilibrium it begins and ends, in these units.
@@ -35,11 +51,13 @@ pub(super) struct Frame {
     pub kind: Kind,
 }
 
-/// Where nodes may move: across these directions, in units of the frame, through these points beside the equilibrium. Nodes near the equilibrium go with it.
+/// Where a node may move, beside the equilibrium: nodes near it go with it.
 #[derive(Debug, Clone)]
-pub(super) struct Planes {
-    pub through: Vec<Vector>,
-    pub normals: Vec<Vector>,
+pub(super) enum Place {
+    /// Across a direction, in units of the frame, through a point.
+    Across { normal: Vector, through: Vector },
+    /// At this distance. Near the equilibrium the orbit may turn from one of its directions to another.
+    Distance(f64),
 }
 
 /// A last equation.
@@ -63,6 +81,8 @@ pub(super) struct Linear {
     /// ln of what each arc grows by.
     pub growths: Vec<f64>,
     pub splitting: Splitting,
+    /// The first of the equations that hold the nodes in their places.
+    first_of_places: usize,
 }
 
 /// The places of the unknowns: the equilibrium, the nodes, ln of the durations, the parameters.
@@ -125,6 +145,16 @@ impl Layout {
     }
 }
 
+impl Frame {
+    /// The sizes of the variables for an orbit. One that comes to move much less than the others, beside what it did at first, keeps a part of its size.
+    pub fn resized(&self, connection: &Connection) -> Vector {
+        const PART: f64 = 0.01;
+        let sizes = connection.sizes();
+        let factor = sizes.component_div(&self.first).max().min(1.0);
+        sizes.zip_map(&self.first, |size, first| size.max(PART * factor * first))
+    }
+}
+
 impl Connection {
     pub fn layout(&self) -> Layout {
         Layout {
@@ -170,33 +200,28 @@ impl Connection {
         by
     }
 
-    /// What the orbit goes through in each variable; of one that does not move its value.
+    /// What the orbit goes through in each variable.
     pub fn sizes(&self) -> Vector {
-        let values = |i: usize| self.nodes.iter().map(move |x| x[i]);
-        Vector::from_fn(self.saddle.len(), |i, _| {
-            let most = values(i).fold(self.saddle[i], f64::max);
-            let least = values(i).fold(self.saddle[i], f64::min);
-            let value = most.abs().max(least.abs());
-            if most - least > f64::EPSILON * value {
-                most - least
-            } else if value > 0.0 {
-                value
-            } else {
-                1.0
-            }
-        })
+        extents(std::iter::once(&self.saddle).chain(&self.nodes))
     }
 
-    /// The planes across the flow through its nodes.
-    pub fn planes(&self, field: &AnyField<'_>, frame: &Frame) -> Planes {
-        let normal = |x: &Vector| {
-            let flow = field.f(x).component_div(&frame.sizes);
-            flow.clone().try_normalize(0.0).unwrap_or(flow)
+    /// Where its nodes may move: across the flow, or near the equilibrium and where they come nearer to it or leave it, at their distance from it.
+    pub fn places(&self, field: &AnyField<'_>, frame: &Frame) -> Vec<Place> {
+        /// Near is this part of the extent of the orbit; the least cosine between the flow and the way from the equilibrium.
+        const NEAR: f64 = 0.1;
+        const RADIAL: f64 = 0.3;
+        let unit = |x: Vector| x.clone().try_normalize(0.0).unwrap_or(x);
+        let place = |x: &Vector| {
+            let normal = unit(field.f(x).component_div(&frame.sizes));
+            let through = x - &self.saddle;
+            let away = through.component_div(&frame.sizes);
+            let distance = away.norm();
+            if distance < NEAR && normal.dot(&away).abs() > RADIAL * distance {
+                return Place::Distance(distance);
+            }
+            Place::Across { normal, through }
         };
-        Planes {
-            normals: self.nodes.iter().map(normal).collect(),
-            through: self.nodes.iter().map(|x| x - &self.saddle).collect(),
-        }
+        self.nodes.iter().map(place).collect()
     }
 }
 
@@ -223,7 +248,7 @@ pub(super) struct Solved {
 
 impl Solver<'_> {
     /// The equations at a guess.
-    pub fn linear(&mut self, at: &Connection, planes: &Planes) -> Result<Linear> {
+    pub fn linear(&mut self, at: &Connection, allowed: &[Place]) -> Result<Linear> {
         let frame = &self.frame;
         let layout = at.layout();
         let (n, m) = (layout.dimension, layout.arcs);
@@ -316,15 +341,8 @@ impl Solver<'_> {
             gaps[row] = 0.5 * (away.norm_squared() - radius.powi(2)) / radius;
             row += 1;
         }
-        for k in 1..m {
-            let normal = &planes.normals[k];
-            rows.view_mut((row, layout.node(k)), (1, n))
-                .copy_from(&normal.transpose());
-            rows.view_mut((row, 0), (1, n))
-                .copy_from(&-normal.transpose());
-            gaps[row] = normal.dot(&inward(&at.nodes[k] - &at.saddle - &planes.through[k]));
-            row += 1;
-        }
+        let first_of_places = row;
+        row += m - 1;
         if frame.kind != Kind::Saddle {
             let singular = Singular::of(&jacobian).ok_or_else(lost)?;
             let outward = |x: &Vector| x.component_mul(&frame.sizes);
@@ -343,29 +361,31 @@ impl Solver<'_> {
             gaps[row] = singular.value;
             errors[row] = 4.0 * f64::EPSILON + singular.value.abs();
         }
-        Ok(Linear {
+        let linear = Linear {
             rows,
             gaps,
             errors,
             growths,
             splitting,
-        })
+            first_of_places,
+        };
+        Ok(linear.placed(at, allowed, frame))
     }
 
-    /// The connection near a guess, with its surroundings, its nodes in these planes.
+    /// The connection near a guess, with its surroundings, its nodes where they may move.
     ///
     /// # Errors
     /// [`Error::NotConverged`]; those of the flow.
     pub fn correct(
         &mut self,
         guess: Connection,
-        planes: &Planes,
+        allowed: &[Place],
         condition: &Condition<'_>,
     ) -> Result<Solved> {
         let mut connection = guess;
         let mut last = f64::INFINITY;
         for iteration in 1..=ITERATIONS {
-            let linear = self.linear(&connection, planes)?;
+            let linear = self.linear(&connection, allowed)?;
             let (row, missing) = self.condition(&connection, condition);
             let failed = |residual| Error::NotConverged {
                 what: "the homoclinic orbit",
@@ -385,7 +405,7 @@ impl Solver<'_> {
             let part = (TRUSTED / size).min(1.0);
             connection = connection.moved(&(by * part), &self.frame);
             if size < LAST {
-                let mut linear = self.linear(&connection, planes)?;
+                let mut linear = self.linear(&connection, allowed)?;
                 // What is left is part of what the equations may be off by.
                 for (error, gap) in linear.errors.iter_mut().zip(&linear.gaps) {
                     *error += gap.abs();
@@ -432,6 +452,35 @@ pub(super) fn lost() -> Error {
 }
 
 impl Linear {
+    /// The same with the nodes in these places.
+    pub fn placed(mut self, at: &Connection, allowed: &[Place], frame: &Frame) -> Self {
+        let layout = at.layout();
+        let n = layout.dimension;
+        let inward = |x: Vector| x.component_div(&frame.sizes);
+        for k in 1..layout.arcs {
+            let row = self.first_of_places + k - 1;
+            let away = inward(&at.nodes[k] - &at.saddle);
+            let (normal, gap) = match &allowed[k] {
+                Place::Across { normal, through } => {
+                    let gap = normal.dot(&(&away - inward(through.clone())));
+                    (normal.clone(), gap)
+                }
+                Place::Distance(distance) => {
+                    let gap = 0.5 * (away.norm_squared() - distance.powi(2)) / distance;
+                    (&away / *distance, gap)
+                }
+            };
+            self.rows.row_mut(row).fill(0.0);
+            let transposed = normal.transpose();
+            self.rows
+                .view_mut((row, layout.node(k)), (1, n))
+                .copy_from(&transposed);
+            self.rows.view_mut((row, 0), (1, n)).copy_from(&-transposed);
+            self.gaps[row] = gap;
+        }
+        self
+    }
+
     /// The displacement with these right-hand sides, of which the last is that of this row.
     pub fn solve(&self, row: &Vector, right: Vector) -> Option<Vector> {
         let solution = self.with(row).lu().solve(&right)?;

@@ -1,7 +1,7 @@
 //! Homoclinic orbits as a curve that can be followed in the plane of both parameters.
 
 use super::codimension_two::{Ends, Test};
-use super::connection::{Condition, Frame, Layout, Planes, Solved, Solver};
+use super::connection::{Condition, Frame, Layout, Place, Solved, Solver};
 use super::saddle::Kind;
 use crate::continuation::{CurveStep, SolutionCurve, StepControl, Stop, WatchedFunction};
 use crate::error::{Error, Result};
@@ -12,7 +12,9 @@ use crate::field::Vector;
 pub(super) struct HomoclinicPoint {
     pub solved: Solved,
     pub tangent: Vector,
-    planes: Planes,
+    /// The same with its nodes in the places of the point that it was found from.
+    arrived: Vector,
+    places: Vec<Place>,
     ends: Ends,
     /// What the curve may be off by across itself, in units of the ranges.
     pub off: f64,
@@ -68,17 +70,26 @@ impl Solver<'_> {
         before: Option<&HomoclinicPoint>,
     ) -> Option<HomoclinicPoint> {
         let layout = solved.connection.layout();
-        let tangent = solved.linear.tangent(layout, along)?;
+        let arrived = solved.linear.tangent(layout, along)?;
+        let places = {
+            let field = self.family.field(solved.connection.at);
+            solved.connection.places(&field, &self.frame)
+        };
+        let linear = solved
+            .linear
+            .placed(&solved.connection, &places, &self.frame);
+        let solved = Solved { linear, ..solved };
+        let tangent = solved.linear.tangent(layout, &arrived)?;
         let (adjoint, slopes) = solved.linear.adjoint(layout, &tangent)?;
         let errors = adjoint.iter().zip(&solved.linear.errors);
         let off: f64 = errors.map(|(y, error)| y.abs() * error).sum();
         let frame = &self.frame;
-        let field = self.family.field(solved.connection.at);
         Some(HomoclinicPoint {
             ends: Ends::new(&solved, &frame.sizes, &adjoint, before.map(|one| &one.ends)),
-            planes: solved.connection.planes(&field, frame),
+            places,
             off: off / slopes[0].hypot(slopes[1]),
             tangent,
+            arrived,
             solved,
         })
     }
@@ -93,12 +104,20 @@ pub(super) struct NonCentral {
 impl NonCentral {
     /// Near a homoclinic orbit to a saddle or to a saddle-node; `None` where there is none.
     pub fn near(point: &HomoclinicPoint, solver: &mut Solver<'_>) -> Option<Self> {
+        let frame = solver.frame.clone();
+        let found = Self::solved(point, solver);
+        solver.frame = frame;
+        found
+    }
+
+    fn solved(point: &HomoclinicPoint, solver: &mut Solver<'_>) -> Option<Self> {
         /// How far from it, in parts of the ranges.
         const NEAR: f64 = 0.1;
         let old = &point.solved.connection;
         let before = solver.frame.clone();
         solver.frame = Frame {
             sizes: before.sizes.clone(),
+            first: before.first.clone(),
             widths: before.widths,
             ..Frame::new(old.saddle.len(), [(0.0, 1.0); 2], Kind::NonCentral)
         };
@@ -117,9 +136,9 @@ impl NonCentral {
             guess = solver.extended(guess, &splitting, [false, true]);
         }
         let field = solver.family.field(guess.at);
-        let planes = guess.planes(&field, &solver.frame);
+        let places = guess.places(&field, &solver.frame);
         drop(field);
-        let solved = solver.correct(guess, &planes, &Condition::None).ok()?;
+        let solved = solver.correct(guess, &places, &Condition::None).ok()?;
         let mut ways = (0..2).map(|i| (solved.connection.at[i] - old.at[i]) / before.widths[i]);
         if ways.any(|way| way.abs() > NEAR) {
             return None;
@@ -133,6 +152,25 @@ impl NonCentral {
 }
 
 impl HomoclinicCurve<'_, '_> {
+    /// The point, or one beside it where a test function is zero at it.
+    pub fn regular(&mut self, point: HomoclinicPoint) -> HomoclinicPoint {
+        /// A value that is not zero.
+        const CLEAR: f64 = 1e-6;
+        let is_clear = |curve: &Self, point: &HomoclinicPoint| {
+            let value = |test| {
+                curve
+                    .value(point, WatchedFunction::TestFunction(test))
+                    .abs()
+            };
+            Test::ALL.iter().all(|&test| !(value(test) < CLEAR))
+        };
+        if is_clear(self, &point) {
+            return point;
+        }
+        let beside = self.correct(&point, LONGEST * self.step).ok();
+        beside.map_or(point, |(beside, _)| beside)
+    }
+
     /// How far along the curve a zero of a test function may be off; infinite where its slope can't be told.
     pub fn off_along(&mut self, at: &HomoclinicPoint, test: Test) -> f64 {
         /// Where the slope is measured, in parts of the longest step.
@@ -153,7 +191,7 @@ impl HomoclinicCurve<'_, '_> {
     fn landed(&mut self, near: &HomoclinicPoint, i: usize, value: f64) -> Option<HomoclinicPoint> {
         let guess = near.solved.connection.clone();
         let condition = Condition::Parameter(i, value);
-        let solved = self.solver.correct(guess, &near.planes, &condition).ok()?;
+        let solved = self.solver.correct(guess, &near.places, &condition).ok()?;
         let mut point = self.solver.point(solved, &near.tangent, Some(near))?;
         point.solved.connection.at[i] = value;
         Some(point)
@@ -161,7 +199,7 @@ impl HomoclinicCurve<'_, '_> {
 
     /// Whether its nodes or units had better be chosen anew.
     fn is_uneven(&self, point: &HomoclinicPoint) -> bool {
-        let sizes = point.solved.connection.sizes();
+        let sizes = self.solver.frame.resized(&point.solved.connection);
         let mut pairs = sizes.iter().zip(&self.solver.frame.sizes);
         let resized = pairs.any(|(a, b)| !(b / RESIZED..=b * RESIZED).contains(a));
         let mut growths = point.solved.linear.growths.iter();
@@ -175,18 +213,17 @@ impl HomoclinicCurve<'_, '_> {
             .solver
             .spread(&old.connection, &old.linear.growths)
             .ok()?;
-        self.solver.frame.sizes = guess.sizes();
+        self.solver.frame.sizes = self.solver.frame.resized(&guess);
         let layout = guess.layout();
         let field = self.solver.family.field(guess.at);
-        let planes = guess.planes(&field, &self.solver.frame);
+        let places = guess.places(&field, &self.solver.frame);
         drop(field);
-        // The parameter that varies less along the curve is where it was.
+        // The parameter that varies more along the curve is where it was.
         let from = point.layout();
         let along = [0, 1].map(|i| point.tangent[from.parameter(i)]);
         let held = usize::from(along[0].abs() < along[1].abs());
-        let held = 1 - held;
         let condition = Condition::Parameter(held, guess.at[held]);
-        let solved = self.solver.correct(guess, &planes, &condition).ok()?;
+        let solved = self.solver.correct(guess, &places, &condition).ok()?;
         let mut direction = Vector::zeros(layout.count());
         direction
             .rows_mut(0, layout.dimension)
@@ -225,7 +262,7 @@ impl SolutionCurve for HomoclinicCurve<'_, '_> {
         let condition = Condition::Along(&from.tangent, origin, distance);
         let solved = self
             .solver
-            .correct(guess.clone(), &from.planes, &condition)?;
+            .correct(guess.clone(), &from.places, &condition)?;
         let layout = from.layout();
         let missed = solved.connection.from(&guess, &frame);
         let missed = layout.dot(&missed, &missed).sqrt();
@@ -240,7 +277,7 @@ impl SolutionCurve for HomoclinicCurve<'_, '_> {
     }
 
     fn cosine(&self, a: &HomoclinicPoint, b: &HomoclinicPoint) -> f64 {
-        a.layout().dot(&a.tangent, &b.tangent)
+        a.layout().dot(&a.tangent, &b.arrived)
     }
 
     fn failed(

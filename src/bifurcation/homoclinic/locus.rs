@@ -36,7 +36,10 @@ pub fn homoclinic_curves(curve: &GeneralCurve<'_>, seen: GeneralObserver<'_>) ->
     };
     for along in [0, 1] {
         let held = 1 - along;
-        let own = curve.own.iter().map(|at| at[held]);
+        let own = curve.own.iter().map(|at| at[held]).filter(|own| {
+            let (from, to) = curve.ranges[held];
+            (from.min(to)..=from.max(to)).contains(own)
+        });
         let given = curve.orbit.iter().map(|orbit| orbit.at[held]).chain(own);
         let scan: Vec<f64> = given.chain(scanned(curve, held)).collect();
         for value in scan {
@@ -132,6 +135,12 @@ impl HomoclinicCurves<'_, '_> {
             return Ok(());
         }
         self.passes.push(self.pass(&first));
+        // A special point at the begin would be on neither half.
+        let mut begin = HomoclinicCurve {
+            solver: &mut solver,
+            step: curve.following.step,
+        };
+        let first = begin.regular(first);
         let number = self.count;
         self.count += 1;
         let frame = solver.frame.clone();
@@ -148,9 +157,9 @@ impl HomoclinicCurves<'_, '_> {
                 return Ok(());
             }
         }
-        let value = orbit.at[held];
+        let value = first.solved.connection.at[held];
         let label = curve.at[held].contains(&value).then_some(Label::Uz);
-        let begin = self.told(&first, number, label, Some((held, value)));
+        let begin = self.told(&first, number, label, label.map(|_| (held, value)));
         if teller.point(begin, label.is_some()).is_break() {
             return Ok(());
         }
@@ -183,7 +192,7 @@ impl HomoclinicCurves<'_, '_> {
             );
         }
         let step = curve.following.step;
-        let (mut last, mut ended) = (first.clone(), None);
+        let mut last = first.clone();
         let mut continuation = Continuation::new(HomoclinicCurve { solver, step }, first);
         let most = curve.following.max_points;
         let stopped =
@@ -196,9 +205,15 @@ impl HomoclinicCurves<'_, '_> {
                     }
                     seen(self.told(at, number, None, None), false)
                 }
+                // With the orbit's end at some distance it is near there, if anywhere.
                 Met::Zero(WatchedFunction::TestFunction(Test::NonCentral), at) => {
-                    ended = Some(at.clone());
-                    Break(())
+                    match self.non_central(at, continuation.curve.solver, number) {
+                        Some(end) => {
+                            seen(end, true)?;
+                            Break(())
+                        }
+                        None => Continue(()),
+                    }
                 }
                 Met::Zero(WatchedFunction::TestFunction(test), at) => {
                     let along = continuation.curve.off_along(at, test);
@@ -219,24 +234,28 @@ impl HomoclinicCurves<'_, '_> {
                 }
                 Met::Zero(WatchedFunction::Turn(_), _) => Continue(()),
             })?;
-        if stopped == Stop::Observer && ended.is_none() {
-            return Ok(());
-        }
-        let last = ended.unwrap_or(last);
-        if let Some(end) = NonCentral::near(&last, continuation.curve.solver) {
-            let point = self.told_of(
-                &end.solved,
-                number,
-                Some(Label::Nch),
-                end.solved.connection.at,
-            );
-            let _ = seen(point.placed(curve.system.family, end.off), true);
-        } else {
-            let mut end = self.told(&last, number, Some(Label::Mx), None);
-            end.note = Some(stopped.to_string());
+        if stopped != Stop::Observer {
+            let end = self.non_central(&last, continuation.curve.solver, number);
+            let end = end.unwrap_or_else(|| GeneralPoint {
+                note: Some(stopped.to_string()),
+                ..self.told(&last, number, Some(Label::Mx), None)
+            });
             let _ = seen(end, true);
         }
         Ok(())
+    }
+
+    /// The non-central homoclinic orbit to a saddle-node near a point, if there is one.
+    fn non_central(
+        &self,
+        near: &HomoclinicPoint,
+        solver: &mut Solver<'_>,
+        number: usize,
+    ) -> Option<GeneralPoint> {
+        let NonCentral { solved, off } = NonCentral::near(near, solver)?;
+        let at = solved.connection.at;
+        let point = self.told_of(&solved, number, Some(Label::Nch), at);
+        Some(point.placed(self.curve.system.family, off))
     }
 
     /// A point as it is told; of a value of a parameter that is landed on with what the other one may be off by.

@@ -14,7 +14,7 @@ const RETURNS = { returns: 600, skip: 400 };
 /** Cells of a map of regimes along each axis; of a fit, whose map is one for each draw. */
 const CELLS = { one: 24, fit: 10 };
 /** Curves that take least come first. */
-const QUICK = ["pitchfork", "saddle-node", "hopf", "period-doubling", "orbit-pitchfork", "torus", "orbit-saddle-node"];
+const QUICK = ["pitchfork", "saddle-node", "hopf", "period-doubling", "orbit-pitchfork", "torus", "orbit-saddle-node", "homoclinic"];
 
 /** Curves of orbits of these models take minutes: they are computed when somebody asks for them. */
 function isCostly(model) {
@@ -23,7 +23,7 @@ function isCostly(model) {
   return model.kind === "interfaces" && (model.states.length > 3 || unequal || !builtIn);
 }
 
-const OF_ORBITS = /^(orbit-|period-doubling|torus)/;
+const OF_ORBITS = /^(orbit-|period-doubling|torus|homoclinic)/;
 
 /** Notes how long something took, for the clock of the browser. */
 function timed(name, began) {

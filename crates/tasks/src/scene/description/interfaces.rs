@@ -195,7 +195,12 @@ impl Interfaces {
             _ if parts > MOST_INTERFACES => Vec::new(),
             _ if parts > MOST_APART => CurveChoice::of_equilibria(broken[0]),
             // A single one has one steady state.
-            _ => CurveChoice::of_system(variables, parts > 1, broken),
+            _ => {
+                let mut curves = CurveChoice::of_system(variables, parts > 1, broken);
+                // Those of interfaces take seconds, and none are known.
+                curves.retain(|name| *name != "homoclinic");
+                curves
+            }
         }
     }
 }

@@ -171,6 +171,15 @@ impl<'s> GeneralLocusPlan<'s> {
         }
         following::both_symmetries(&options.symmetry)?;
         let following = Following::new(&options.continuation, orbits)?;
+        let refused = [
+            ("criticality", options.criticality),
+            ("crosscheck", following.second.is_some()),
+        ];
+        if let Some((name, _)) = refused.iter().find(|(_, given)| homoclinic && *given) {
+            return Err(Error::Input(format!(
+                "`{name}` is of bifurcations of equilibria and of periodic orbits; homoclinic orbits have none"
+            )));
+        }
         let outward = |free: &Free, x: f64| subject.units().outward(free.quantity, x);
         let list = |free: &Free, all: &[f64]| -> Vec<f64> {
             all.iter().map(|&x| outward(free, x)).collect()

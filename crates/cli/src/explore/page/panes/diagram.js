@@ -15,6 +15,7 @@ const KINDS = {
   "orbit-saddle-node": ["fold of orbits (SN)", 2],
   "period-doubling": ["period doubling (PD)", 3],
   torus: ["torus (TR)", 5],
+  homoclinic: ["homoclinic (HOM)", 7],
 };
 /** Labels of points that are no bifurcations. */
 const PLAIN = ["EP", "UZ", "", null];

@@ -1,7 +1,7 @@
 // Descriptions of panels that are made here, in the form of those that the program sends.
 
 /** Colours that stay apart for the colour-blind (Okabe and Ito 2008). */
-export const COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000"];
+export const COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000", "#8c564b"];
 
 /** An empty panel with these axes. */
 export function panelOf(x, y) {
