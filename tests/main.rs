@@ -146,6 +146,7 @@ mod slip_events;
 mod solution_curves;
 mod special_points;
 mod spikes;
+mod spring_sliders;
 mod step_ends;
 mod strong_resonance;
 #[cfg(feature = "sundials")]
