@@ -18,8 +18,10 @@ TOLERANCES = range(3, 15)
 RUNS = 5
 #: Seconds of which each of the runs is made at least, of repetitions if one is shorter.
 SHORTEST = 0.002
-#: A method that takes so many seconds is not asked for tighter tolerances, and runs above a quarter of it are made once.
-LONGEST = 1.2
+#: A method that takes so many seconds is not asked for tighter tolerances.
+LONGEST = 1.0
+#: Longer runs are made once.
+LONG = 0.1
 
 
 def arguments(**more):
@@ -43,7 +45,7 @@ def timed(run):
     begin = time.process_time()
     result = run()
     first = time.process_time() - begin
-    if first > LONGEST / 4:
+    if first > LONG:
         return result, first
     repeat = max(1, round(SHORTEST / max(first, 1e-7)))
     times = []

@@ -163,7 +163,15 @@ def python_rates(made, parameters):
     names = {name: getattr(math, name) for name in "exp log sinh cosh sin cos pow sqrt tanh pi".split()}
     scope = names | made.numbers(parameters)
     exec(text, scope)  # noqa: S102
-    return scope["f"], scope["jacobian"]
+
+    def f(t, y):
+        try:
+            return scope["f"](t, y)
+        except (ArithmeticError, ValueError):
+            # a trial state outside of the formulas: a shorter step is wanted
+            return [math.nan] * count
+
+    return f, scope["jacobian"]
 
 
 def page(problems):
