@@ -15,13 +15,13 @@ from problems import error, form, load, references
 
 #: Powers of ten.
 TOLERANCES = range(3, 15)
-RUNS = 5
+RUNS = 3
 #: Seconds of which each of the runs is made at least, of repetitions if one is shorter.
 SHORTEST = 0.002
 #: A method that takes so many seconds is not asked for tighter tolerances.
-LONGEST = 1.0
+LONGEST = 0.5
 #: Longer runs are made once.
-LONG = 0.1
+LONG = 0.05
 
 
 def arguments(**more):

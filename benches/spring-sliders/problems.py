@@ -79,6 +79,8 @@ def references():
 
 def error(compared, reference):
     """The largest of |q - Q|/(1 + |Q|) over the compared quantities q with the references Q."""
+    if not all(map(math.isfinite, compared.values())):
+        raise ValueError("the result is not a number")
     return max(abs(compared[name] - float(known)) / (1.0 + abs(float(known))) for name, known in reference.items())
 
 
@@ -125,6 +127,10 @@ def written(formula, functions="", real="{}.0"):
         def visit_Name(self, node):
             return ast.Name(functions + node.id) if node.id in names else node
 
+        def visit_BinOp(self, node):
+            node = self.generic_visit(node)
+            return ast.Call(ast.Name("pow"), [node.left, node.right], []) if isinstance(node.op, ast.Pow) else node
+
         def visit_Constant(self, node):
             return ast.Name(real.format(node.value)) if isinstance(node.value, int) else node
 
@@ -143,35 +149,39 @@ def jacobian(made):
         known[name] = value_of(formula, known, exact, sympy)
     rates = [value_of(formula, known, exact, sympy) for formula in made.rates]
     entries = [rate.diff(symbols[state]) for rate in rates for state in made.states]
-    return sympy.cse(entries, symbols=sympy.numbered_symbols("common"))
+    common, entries = sympy.cse(entries, symbols=sympy.numbered_symbols("common"))
+    return [(str(name), str(formula)) for name, formula in common], list(map(str, entries))
 
 
 def python_rates(made, parameters):
     """`f(t, y)` and `jacobian(t, y)` of a form as Python functions of lists, in scalars of `math`."""
-    from sympy import pycode
-
     unpack = f"    {', '.join(made.states)}, = y\n"
     lines = [f"    {name} = {written(formula)}\n" for name, formula in made.where.items()]
     rates = ", ".join(written(formula) for formula in made.rates)
     text = "def f(t, y):\n" + unpack + "".join(lines) + f"    return [{rates}]\n"
     common, entries = jacobian(made)
-    plain = lambda expression: pycode(expression, fully_qualified_modules=False)  # noqa: E731
-    lines = [f"    {name} = {plain(expression)}\n" for name, expression in common]
+    lines = [f"    {name} = {written(expression)}\n" for name, expression in common]
     count = len(made.states)
-    rows = [", ".join(map(plain, entries[row * count : (row + 1) * count])) for row in range(count)]
+    rows = [", ".join(map(written, entries[row * count : (row + 1) * count])) for row in range(count)]
     text += "def jacobian(t, y):\n" + unpack + "".join(lines) + f"    return [[{'], ['.join(rows)}]]\n"
     names = {name: getattr(math, name) for name in "exp log sinh cosh sin cos pow sqrt tanh pi".split()}
     scope = names | made.numbers(parameters)
     exec(text, scope)  # noqa: S102
 
-    def f(t, y):
-        try:
-            return scope["f"](t, y)
-        except (ArithmeticError, ValueError):
-            # a trial state outside of the formulas: a shorter step is wanted
-            return [math.nan] * count
+    def guarded(function, failed):
+        """Not numbers for a trial state outside of the formulas: a shorter step is wanted."""
 
-    return f, scope["jacobian"]
+        def value(t, y):
+            try:
+                made = function(t, y)
+            except (ArithmeticError, ValueError):
+                return failed
+            return made
+
+        return value
+
+    nan = [math.nan] * count
+    return guarded(scope["f"], nan), guarded(scope["jacobian"], [nan] * count)
 
 
 def page(problems):

@@ -14,7 +14,7 @@
 #include "system.h"
 
 enum { RUNS_AT_MOST = 99 };
-static const double LONG = 0.1;      /* seconds: a run as long is made once */
+static const double LONG = 0.05;     /* seconds: a run as long is made once */
 static const double SHORTEST = 0.002; /* seconds of each measurement */
 
 static double now(void) {

@@ -11,8 +11,6 @@ import sys
 import tempfile
 from pathlib import Path
 
-from sympy import ccode
-
 import measure
 from problems import jacobian, written
 
@@ -38,15 +36,15 @@ def text(made):
         lines.append(f"    static const double all_{name}[] = {{{values}}};\n    p_{name} = all_{name}[stretch];")
     lines.append("}")
     named = lambda formula: re.sub(rf"\b({'|'.join(names)})\b", r"p_\1", formula)  # noqa: E731
-    power = lambda formula: named(written(formula))  # noqa: E731
+    in_c = lambda formula: named(written(formula))  # noqa: E731
     unpack = "".join(f"    const double {state} = y[{i}];\n" for i, state in enumerate(made.states))
     lines.append("static void rates(double t, const double *y, double *out) {\n    (void)t, (void)pi;\n" + unpack)
-    lines += [f"    const double {name} = {power(formula)};" for name, formula in made.where.items()]
-    lines += [f"    out[{i}] = {power(formula)};" for i, formula in enumerate(made.rates)]
+    lines += [f"    const double {name} = {in_c(formula)};" for name, formula in made.where.items()]
+    lines += [f"    out[{i}] = {in_c(formula)};" for i, formula in enumerate(made.rates)]
     lines.append("}\nstatic void jacobian(double t, const double *y, double *out) {\n    (void)t;\n" + unpack)
     common, entries = jacobian(made)
-    lines += [f"    const double {name} = {named(ccode(expression))};" for name, expression in common]
-    lines += [f"    out[{i}] = {named(ccode(expression))};" for i, expression in enumerate(entries)]
+    lines += [f"    const double {name} = {in_c(expression)};" for name, expression in common]
+    lines += [f"    out[{i}] = {in_c(expression)};" for i, expression in enumerate(entries)]
     return "\n".join([*lines, "}", ""])
 
 

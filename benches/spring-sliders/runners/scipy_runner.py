@@ -34,7 +34,7 @@ def lsoda(made, tolerance):
             with warnings.catch_warnings():
                 warnings.simplefilter("error")
                 y = odeint(
-                    f, y, [begin, end], Dfun=jacobian, tfirst=True, rtol=tolerance, atol=tolerance * sizes, tcrit=[end], mxstep=10**6
+                    f, y, [begin, end], Dfun=jacobian, tfirst=True, rtol=tolerance, atol=tolerance * sizes, tcrit=[end], mxstep=50_000
                 )[-1]
         return y.tolist()
 
