@@ -61,6 +61,36 @@ fn every_problem_has_references_of_twenty_digits_at_its_times() {
     }
 }
 
+#[test]
+fn the_page_of_problems_has_what_the_file_says() {
+    let path = format!("{ROOT}/benches/spring-sliders/PROBLEMS.md");
+    let page = fs::read_to_string(&path).unwrap_or_else(|e| panic!("{path}: {e}"));
+    for (problem, _) in problems() {
+        let (_, section) = page
+            .split_once(&format!("(`{}`)\n", text(&problem["name"])))
+            .expect("a section");
+        let section = section.split("\n## ").next().expect("a section");
+        let has = |what: &str| assert!(section.contains(what), "{}: {what}", problem["name"]);
+        has(text(&problem["about"]));
+        has(&format!("\n{}\n", text(&problem["twinslip"])));
+        for (name, value) in pairs(&problem["parameters"]).chain(pairs(&problem["constants"])) {
+            has(&format!("{name} = {value}"));
+        }
+        for form in list(&problem["forms"]) {
+            for (name, formula) in pairs(&form["where"]) {
+                has(&format!("\n{name} = {formula}\n"));
+            }
+            for (name, rate) in pairs(&form["rates"]) {
+                let start = text(&form["start"][name]);
+                has(&format!("\nd{name}/dt = {rate}    ({start})\n"));
+            }
+            for (name, formula) in pairs(&form["compared"]) {
+                has(&format!("{name} = {formula}"));
+            }
+        }
+    }
+}
+
 /// A command without the changes of the driving velocity from this time on, which it would refuse.
 fn before(command: &str, time: &str) -> String {
     let Some((model, rest)) = command.split_once(" --program ") else {

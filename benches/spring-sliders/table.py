@@ -103,7 +103,7 @@ def picture(curves):
             for number, curve in enumerate(forms.values()):
                 seconds, errors = zip(*curve)
                 label = " ".join(method) if number == 0 else None
-                axis.loglog(seconds, [max(off, SMALLEST) for off in errors], label=label, linewidth=1.1, marker=".", markersize=2.5, **styles[method])
+                axis.loglog(seconds, [max(off, SMALLEST) for off in errors], label=label, linewidth=1.2, **styles[method])
         axis.set_title(problem["name"], fontsize=9)
         axis.set_ylim(SMALLEST / 2, 10)
         axis.grid(True, linewidth=0.3, color="#cccccc")
