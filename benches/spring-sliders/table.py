@@ -19,17 +19,23 @@ from matplotlib import pyplot  # noqa: E402
 ERRORS = (1e-4, 1e-6, 1e-8, 1e-10)
 #: Errors beyond are rounding.
 SMALLEST = 1e-14
-COLOURS = {"twinslip": "#c1272d", "heyoka": "#0057b7", "SUNDIALS": "#222222", "SciPy": "#2e8b57", "QDYN": "#b8860b"}
+COLOURS = {"twinslip": "#c1272d", "heyoka": "#0057b7", "SUNDIALS": "#222222", "SciPy": "#2e8b57"}
+#: A code whose times are too short beside the start of its process: its errors alone are shown.
+UNTIMED = "QDYN"
 LINES = ["-", "--", ":"]
 
 
 def read():
-    """Curves of (seconds, error), loosest tolerance first: problem, (code, method), form."""
+    """Curves of (seconds, error), loosest tolerance first: problem, (code, method), form; and errors of what has no times."""
     curves = defaultdict(lambda: defaultdict(lambda: defaultdict(list)))
+    untimed = defaultdict(dict)
     with open(HERE / "results.csv") as file:
         for row in csv.DictReader(file):
+            if row["code"] == UNTIMED:
+                untimed[row["problem"], row["method"]][row["tolerance"]] = row["error"]
+                continue
             curves[row["problem"]][row["code"], row["method"]][row["form"]].append((float(row["seconds"]), float(row["error"])))
-    return curves
+    return curves, untimed
 
 
 def reached(curve, wanted):
@@ -61,7 +67,7 @@ def ratio(value):
     return f"{value:.2g}" if value < 9.95 else f"{value:.0f}"
 
 
-def tables(curves):
+def tables(curves, untimed):
     lines = [
         "# Time to reach an error",
         "",
@@ -83,6 +89,12 @@ def tables(curves):
                 for found, least in zip(row, fastest)
             ]
             lines.append(f"| {code} {method} | " + " | ".join(cells) + " |")
+    if untimed:
+        accuracies = sorted({tolerance for errors in untimed.values() for tolerance in errors}, key=float, reverse=True)
+        lines += ["", f"## Errors of {UNTIMED} at its accuracy (`ACC`)", "", "| | " + " | ".join(accuracies) + " |"]
+        lines.append("|---|" + "---:|" * len(accuracies))
+        for (problem, method), errors in untimed.items():
+            lines.append(f"| `{problem}`, {method} | " + " | ".join(errors.get(accuracy, "-") for accuracy in accuracies) + " |")
     return "\n".join(lines) + "\n"
 
 
@@ -92,7 +104,7 @@ def picture(curves):
     columns = 3
     rows = -(-len(problems) // columns)
     figure, axes = pyplot.subplots(rows, columns, figsize=(10.5, 2.9 * rows), sharex=True, sharey=True, squeeze=False)
-    methods = sorted({method for made in curves.values() for method in made}, key=lambda method: list(COLOURS).index(method[0].split()[0].rstrip(",")))
+    methods = sorted({method for made in curves.values() for method in made}, key=lambda method: (list(COLOURS).index(method[0].split()[0].rstrip(",")), method))
     styles, seen = {}, defaultdict(int)
     for method in methods:
         code = method[0].split()[0].rstrip(",")
@@ -123,8 +135,8 @@ def picture(curves):
 
 
 def main():
-    curves = read()
-    (HERE / "results.md").write_text(tables(curves))
+    curves, untimed = read()
+    (HERE / "results.md").write_text(tables(curves, untimed))
     picture(curves)
 
 

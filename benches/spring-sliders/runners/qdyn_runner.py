@@ -53,8 +53,8 @@ def lines(problem, solver, accuracy, until):
     made = form(problem, "state")
     begun = dict(zip(made.states, made.begin()))
     # near-critical has the stress as a variable, the others have the slip rate
-    known = made.numbers(problem["parameters"])
-    v = begun["v"] if "v" in begun else rate(known, begun)
+    known = made.numbers(problem["parameters"]) | begun
+    v = begun["v"] if "v" in begun else value_of(made.where["v"], known)
     mu = given["K"] * given["a"]
     vs = 0.5 * mu / (given["eta"] * given["a"]) if "eta" in given else 0.0
     return LINES.format(
@@ -71,10 +71,6 @@ def lines(problem, solver, accuracy, until):
         mu_star=problem["parameters"]["mu"],
         v_pl=problem["parameters"]["V"],
     )
-
-
-def rate(known, begun):
-    return value_of("exp(tau - m0)*pow(theta, -beta)", known | begun)
 
 
 def compared(problem, v, theta):
@@ -116,17 +112,17 @@ def main():
             idle = run(program, lines(problem, 1, "1e-6", 1e-6), folder)[-1]
         for method, solver in METHODS.items():
             for power in TOLERANCES:
-                with tempfile.TemporaryDirectory() as folder:
-                    try:
+                try:
+                    with tempfile.TemporaryDirectory() as folder:
                         t, v, theta, seconds = run(program, lines(problem, solver, f"1e-{power}", until), folder)
-                    except (ValueError, subprocess.SubprocessError) as failed:
-                        print(f"{problem['name']}, {method}, 1e-{power}: {failed}", file=sys.stderr)
-                        continue
-                seconds = max(seconds - idle, SMALLEST * idle)
-                exact = None
-                if t != until:
-                    ((exact, _),) = taylor.solve(form(problem, "logarithm"), [repr(t)])
-                rows.row(method, "state", problem, f"1e-{power}", seconds, compared(problem, v, theta), exact)
+                    exact = None
+                    if t != until:
+                        ((exact, _),) = taylor.solve(form(problem, "logarithm"), [repr(t)])
+                    seconds = max(seconds - idle, SMALLEST * idle)
+                    rows.row(method, "state", problem, f"1e-{power}", seconds, compared(problem, v, theta), exact)
+                except (ValueError, subprocess.SubprocessError) as failed:
+                    print(f"{problem['name']}, {method}, 1e-{power}: {failed}", file=sys.stderr)
+                    continue
                 if seconds > measure.LONGEST:
                     break
 
