@@ -91,7 +91,7 @@ def tables(curves, untimed):
             lines.append(f"| {code} {method} | " + " | ".join(cells) + " |")
     if untimed:
         accuracies = sorted({tolerance for errors in untimed.values() for tolerance in errors}, key=float, reverse=True)
-        lines += ["", f"## Errors of {UNTIMED} at its accuracy (`ACC`)", "", "| | " + " | ".join(accuracies) + " |"]
+        lines += ["", f"## Errors of {UNTIMED} at its accuracy (`ACC`)", "", "`-`: the result was not a number, or there was none.", "", "| | " + " | ".join(accuracies) + " |"]
         lines.append("|---|" + "---:|" * len(accuracies))
         for (problem, method), errors in untimed.items():
             lines.append(f"| `{problem}`, {method} | " + " | ".join(errors.get(accuracy, "-") for accuracy in accuracies) + " |")
