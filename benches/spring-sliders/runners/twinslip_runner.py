@@ -1,7 +1,7 @@
 """twinslip by its Python package: the published command of each problem, in the process of Python.
 
 Reading the options and making the system are left out of the times. What is in them: the call from Python, which runs in a
-thread of its own and takes about a tenth of a millisecond, and all preparations of the solver, with compilation where it
+thread of its own and takes some tenths of a millisecond, and all preparations of the solver, with compilation where it
 pays.
 """
 
