@@ -22,7 +22,7 @@ const AGAIN: f64 = 3.0;
 const LINEAR: f64 = 0.3;
 /// ln of what arcs near the equilibrium grow by.
 const GROWTH: f64 = 4.0;
-/// The ends of arcs that are joined are no farther apart, in parts of the extent of the orbit.
+/// What is joined is no longer than this, in parts of the extent of the orbit.
 const FAR: f64 = 0.1;
 
 /// An orbit seen at many places in time.
@@ -226,15 +226,16 @@ impl Solver<'_> {
     pub fn spread(&mut self, old: &Connection, growths: &[f64]) -> Result<Connection> {
         let field = self.family.field(old.at);
         let (mut nodes, mut durations) = (vec![old.nodes[0].clone()], Vec::new());
-        let (mut time, mut grown) = (0.0, 0.0);
+        let (mut time, mut grown, mut path) = (0.0, 0.0, 0.0);
         for (k, (&duration, growth)) in old.durations.iter().zip(growths).enumerate() {
             let growth = growth.max(0.0);
             let parts = (growth / GROWTH).ceil().max(1.0);
-            let way = (&old.nodes[k + 1] - &nodes[nodes.len() - 1]).component_div(&old.sizes());
-            if time > 0.0 && (grown + growth > GROWTH || way.amax() > FAR) {
+            let way = (&old.nodes[k + 1] - &old.nodes[k]).component_div(&self.frame.sizes);
+            let way = way.amax();
+            if time > 0.0 && (grown + growth > GROWTH || path + way > FAR) {
                 nodes.push(old.nodes[k].clone());
                 durations.push(time);
-                (time, grown) = (0.0, 0.0);
+                (time, grown, path) = (0.0, 0.0, 0.0);
             }
             let part = duration / parts;
             let mut x = old.nodes[k].clone();
@@ -244,6 +245,7 @@ impl Solver<'_> {
                 durations.push(part);
             }
             time += part;
+            path += way / parts;
             grown += growth / parts;
         }
         nodes.push(old.nodes[old.nodes.len() - 1].clone());

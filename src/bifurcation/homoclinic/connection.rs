@@ -23,7 +23,7 @@ pub(super) struct Connection {
     pub at: [f64; 2],
 }
 
-/// What points go through in each variable. One that does not move has no size of its own, but that of the errors of integrators.
+/// What points go through in each variable. One that does not move has no size of its own, but that in which the errors of integrators are measured.
 pub(super) fn extents<'p>(points: impl Iterator<Item = &'p Vector>) -> Vector {
     const STILL: f64 = 1e-9;
     let both = points.fold(None, |both: Option<[Vector; 2]>, x| match both {
@@ -33,7 +33,10 @@ pub(super) fn extents<'p>(points: impl Iterator<Item = &'p Vector>) -> Vector {
     let Some([least, most]) = both else {
         return Vector::zeros(0);
     };
-    let extent = |a: f64, b: f64| (b - a).max(STILL * (1.0 + a.abs().max(b.abs())));
+    let extent = |a: f64, b: f64| {
+        let unit = 1.0 + a.abs().max(b.abs());
+        if b - a > STILL * unit { b - a } else { unit }
+    };
     least.zip_map(&most, extent)
 }
 
