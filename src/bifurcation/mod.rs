@@ -11,9 +11,12 @@ pub mod strong_resonance;
 
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::{Error, Result};
+use crate::model::Loading;
 use crate::number::Uncertain;
-use crate::orbit::InterfaceSystem;
+use crate::orbit::{InterfaceSystem, Profile};
+use std::fmt;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 pub use crate::model::Parameter;
 
@@ -36,6 +39,8 @@ pub enum Label {
     Sn,
     /// A value that was asked for.
     Uz,
+    /// A zero of the user's function.
+    Uf,
     /// The end of the range, or of the branch.
     Ep,
     /// No further: the method failed here.
@@ -96,7 +101,7 @@ pub enum Label {
 
 impl Label {
     /// All, in the order of their declaration.
-    pub const ALL: [Label; 36] = [
+    pub const ALL: [Label; 37] = [
         Label::Bp,
         Label::Lp,
         Label::Hb,
@@ -105,6 +110,7 @@ impl Label {
         Label::Pf,
         Label::Sn,
         Label::Uz,
+        Label::Uf,
         Label::Ep,
         Label::Mx,
         Label::Hom,
@@ -162,6 +168,7 @@ impl Label {
             Label::Pf => "PF",
             Label::Sn => "SN",
             Label::Uz => "UZ",
+            Label::Uf => "UF",
             Label::Ep => "EP",
             Label::Mx => "MX",
             Label::Hom => "HOM",
@@ -204,6 +211,7 @@ impl Label {
             Label::Pf => "pitchfork of orbits",
             Label::Sn => "saddle-node of orbits",
             Label::Uz => "value asked for",
+            Label::Uf => "user function",
             Label::Ep => "end",
             Label::Mx => "no further",
             Label::Hom => "homoclinic",
@@ -426,6 +434,46 @@ impl Event {
 /// Whether to go on.
 pub type EventObserver<'a> = &'a mut dyn FnMut(Event) -> ControlFlow<()>;
 
+/// The value of a function of what interfaces do: at V_H and K, of an equilibrium or of an orbit by what is told of it, with the period of the orbit or of
+/// the oscillation at a Hopf point. NaN where it is undefined.
+pub type ProfileFunction = dyn Fn(Loading, &Profile, Option<f64>) -> f64 + Send + Sync;
+
+/// A function of what interfaces do whose zeros are special points.
+#[derive(Clone)]
+pub struct UserFunction {
+    /// In words, which the special points have in their notes.
+    pub text: String,
+    /// Its value.
+    pub value: Arc<ProfileFunction>,
+}
+
+impl UserFunction {
+    /// The note of a zero.
+    fn note(&self) -> String {
+        zero_note(&self.text)
+    }
+}
+
+/// The note of a zero of `EXPRESSION`, or of `EXPRESSION = VALUE`.
+fn zero_note(text: &str) -> String {
+    match text.contains('=') {
+        true => text.to_owned(),
+        false => format!("{text} = 0"),
+    }
+}
+
+impl fmt::Debug for UserFunction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("UserFunction").field(&self.text).finish()
+    }
+}
+
+impl PartialEq for UserFunction {
+    fn eq(&self, other: &Self) -> bool {
+        self.text == other.text && Arc::ptr_eq(&self.value, &other.value)
+    }
+}
+
 /// A branch that is asked for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BranchRequest {
@@ -439,6 +487,8 @@ pub struct BranchRequest {
     pub symmetry: Option<Symmetry>,
     /// Values to land on.
     pub at: Vec<f64>,
+    /// Functions whose zeros are special points.
+    pub watch: Vec<UserFunction>,
     /// Factor on the step limits.
     pub step: f64,
     /// The accuracy of special points, relative.
@@ -460,6 +510,7 @@ impl BranchRequest {
             range,
             symmetry: None,
             at: Vec::new(),
+            watch: Vec::new(),
             step: 1.0,
             tolerance: TOLERANCE,
             skip: Vec::new(),
@@ -485,6 +536,7 @@ impl LocusRequest {
             stiffness,
             at_driving: Vec::new(),
             at_stiffness: Vec::new(),
+            watch: Vec::new(),
             step: 1.0,
             tolerance: TOLERANCE,
             criticality: false,
@@ -563,6 +615,8 @@ pub struct LocusRequest {
     pub at_driving: Vec<f64>,
     /// Values to land on.
     pub at_stiffness: Vec<f64>,
+    /// Functions whose zeros are special points.
+    pub watch: Vec<UserFunction>,
     /// Factor on the step limits.
     pub step: f64,
     /// The accuracy of all points, relative.

@@ -12,6 +12,8 @@ pub enum WatchedFunction<T> {
     Turn(usize),
     /// A parameter's coordinate less this value.
     Value(usize, f64),
+    /// The user's function of this number: in no unit that is known, and zero within its noise.
+    UserFunction(usize),
 }
 
 /// One step along a curve.
@@ -106,7 +108,12 @@ pub trait SolutionCurve {
         Ok(())
     }
 
-    /// The value of what is watched, of order one. NaN where it is undefined: no sign change then is seen.
+    /// Whether its values are of order one.
+    fn is_scaled(&self, watch: Watched<Self>) -> bool {
+        !matches!(watch, WatchedFunction::UserFunction(_))
+    }
+
+    /// The value of what is watched. NaN where it is undefined: no sign change then is seen.
     fn value(&self, at: &Self::Point, watch: Watched<Self>) -> f64;
 
     /// Whether the slope of what is watched takes much work.

@@ -152,13 +152,15 @@ impl<C: SolutionCurve> Look<'_, C> {
         depth: usize,
     ) {
         let length = b.at - a.at;
-        let mut pairs = a.value.iter().zip(&b.value);
+        let pairs = a.value.iter().zip(&b.value);
+        let mut pairs = pairs.zip(self.watches.iter().map(|&w| self.curve.is_scaled(w)));
         let at = if depth < DEPTH {
-            let halve = pairs.any(|(a, b)| suspicious(*a, *b, length));
+            let halve = pairs.any(|((a, b), scaled)| suspicious((*a, *b), length, scaled));
             halve.then_some(0.5 * (a.at + b.at))
         } else if depth < DEPTH + LOOKS {
             let noise = self.curve.flat().max(NOISE);
-            let part = pairs.find_map(|(a, b)| dip(*a, *b, length, noise));
+            let part = pairs
+                .find_map(|((a, b), scaled)| dip(*a, *b, length, if scaled { noise } else { 0.0 }));
             part.map(|part| a.at + part * length)
         } else {
             None
@@ -236,8 +238,9 @@ impl Cubic {
     }
 }
 
-/// Whether something may hide between two values: a function begins or ends, or its cubic is bent or turns.
-fn suspicious(a: Value, b: Value, length: f64) -> bool {
+/// Whether something may hide between two values: a function begins or ends, or its cubic is bent or turns. Where values are of order one, those
+/// that are not small are not looked at for a bend.
+fn suspicious((a, b): (Value, Value), length: f64, scaled: bool) -> bool {
     if a.0.is_nan() != b.0.is_nan() {
         return true;
     }
@@ -245,7 +248,7 @@ fn suspicious(a: Value, b: Value, length: f64) -> bool {
         return false;
     };
     let Cubic { p, q, c, d, .. } = cubic;
-    let bent = (c.abs() + d.abs()) > BENT * (p.abs() + q.abs()) && cubic.least() < 0.5;
+    let bent = (c.abs() + d.abs()) > BENT * (p.abs() + q.abs()) && (!scaled || cubic.least() < 0.5);
     bent || cubic.aside().is_some()
 }
 

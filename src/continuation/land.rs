@@ -1,7 +1,7 @@
 //! Landing on a zero between two points of a curve.
 
 use super::detect::{Bracket, Sample};
-use super::{CurveStep, SolutionCurve};
+use super::{CurveStep, SolutionCurve, Watched};
 use crate::error::Result;
 
 /// How often a zero is tried to be landed on by Newton's method.
@@ -73,6 +73,31 @@ pub(super) fn landed<C: SolutionCurve>(
         high
     };
     Ok(Some((nearer.at, nearer.point)))
+}
+
+/// Whether a function has another sign before a point at which it was landed on than behind it, on a step of this length: where it only touches zero
+/// it has not, nor where it is zero within its noise.
+pub(crate) fn changes_sign<C: SolutionCurve>(
+    curve: &mut C,
+    watch: Watched<C>,
+    at: &C::Point,
+    length: f64,
+) -> bool {
+    /// Parts of the step, the nearest first: another zero may be next to this one.
+    const ASIDE: [f64; 4] = [1e-4, 1e-3, 1e-2, 0.1];
+    for aside in ASIDE {
+        let mut side = |distance: f64| {
+            let (there, _) = curve.correct(at, distance).ok()?;
+            Some(curve.value(&there, watch))
+        };
+        let [Some(a), Some(b)] = [-aside * length, aside * length].map(&mut side) else {
+            continue;
+        };
+        if a * b != 0.0 {
+            return a * b < 0.0;
+        }
+    }
+    false
 }
 
 /// In the bracket, by inverse quadratic interpolation on the distance (Chandrupatla 1997).

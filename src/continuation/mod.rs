@@ -24,6 +24,7 @@ mod zero_problem;
 use curve::Watched;
 pub use curve::{CurveStep, SolutionCurve, WatchedFunction};
 pub use driver::{Continuation, Met, MetObserver, StepControl};
+pub(crate) use land::changes_sign;
 pub use settings::Settings;
 pub use stop::Stop;
 pub use zero_curve::follow;

@@ -2,8 +2,8 @@
 
 use super::correct::{Hyperplane, failed, from_afar, joined, onto, tangent};
 use super::{
-    Branch, Continuation, CurveObserver, CurvePoint, Met, PointKind, Settings, SolutionCurve,
-    Start, StepControl, Stop, WatchedFunction, ZeroProblem,
+    Branch, Continuation, CurveObserver, CurvePoint, CurveStep, Met, PointKind, Settings,
+    SolutionCurve, Start, StepControl, Stop, WatchedFunction, ZeroProblem, changes_sign,
 };
 use crate::error::{Error, Result};
 use nalgebra::DVector;
@@ -149,6 +149,14 @@ impl ZeroCurve<'_> {
         at.place() - joined(&self.first.u, self.first.lambda)
     }
 
+    /// Whether a test function is the user's.
+    fn is_users(&self, watch: WatchedFunction<ZeroTest>) -> bool {
+        match watch {
+            WatchedFunction::TestFunction(ZeroTest::Observed(i)) => self.watch.is_users(i),
+            _ => false,
+        }
+    }
+
     /// Whether this is the first point once more.
     fn closes(&self, at: &TestedPoint) -> bool {
         let size = 1.0 + at.place().amax();
@@ -245,6 +253,19 @@ impl SolutionCurve for ZeroCurve<'_> {
         a.point.tangent.dot(&b.point.tangent)
     }
 
+    fn is_scaled(&self, watch: WatchedFunction<ZeroTest>) -> bool {
+        !self.is_users(watch)
+    }
+
+    fn certain(
+        &mut self,
+        (watch, _): (WatchedFunction<ZeroTest>, [f64; 2]),
+        at: &TestedPoint,
+        step: &CurveStep<TestedPoint>,
+    ) -> bool {
+        !self.is_users(watch) || changes_sign(self, watch, at, step.length)
+    }
+
     fn value(&self, at: &TestedPoint, watch: WatchedFunction<ZeroTest>) -> f64 {
         match watch {
             WatchedFunction::TestFunction(ZeroTest::Observed(i)) => at.tests[i],
@@ -253,6 +274,8 @@ impl SolutionCurve for ZeroCurve<'_> {
             }
             WatchedFunction::Turn(_) => at.point.lambda_slope(),
             WatchedFunction::Value(_, value) => at.point.lambda - value,
+            // They are among the observer's test functions.
+            WatchedFunction::UserFunction(_) => f64::NAN,
         }
     }
 
@@ -275,7 +298,7 @@ impl SolutionCurve for ZeroCurve<'_> {
                 Some((beside.tests[i] - at.tests[i]) / apart)
             }
             WatchedFunction::TestFunction(ZeroTest::Closing) => Some(self.first.tangent.dot(along)),
-            WatchedFunction::Turn(_) => None,
+            WatchedFunction::Turn(_) | WatchedFunction::UserFunction(_) => None,
             WatchedFunction::Value(..) => Some(at.point.lambda_slope()),
         };
         watches.iter().map(slope).collect()

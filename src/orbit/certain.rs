@@ -115,6 +115,8 @@ fn measured(
             Some((value / size, noise / size))
         }
         WatchedFunction::Value(i, value) => Some((orbit.site.at[i] - value, 0.0)),
+        // Its sign on both sides tells.
+        WatchedFunction::UserFunction(_) => None,
     }
 }
 

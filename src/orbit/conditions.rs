@@ -1,8 +1,10 @@
 //! Conditions on a periodic orbit of a family, and how far the orbit has to move to meet them.
 
 use super::continuation_point::{ContinuationPoint, TangentVector};
+use super::family::ParametrisedField;
 use super::gradients::test_function;
 use super::test_function::{Spectrum, TestFunction};
+use super::user_function::of_orbit;
 use crate::error::Result;
 use nalgebra::{Matrix2, Vector2};
 
@@ -15,6 +17,8 @@ pub enum Condition<'a> {
     Parameter(usize, f64),
     /// A test function vanishes.
     TestFunction(TestFunction),
+    /// The user's function of this number vanishes.
+    UserFunction(usize),
 }
 
 /// Whether all test functions among the conditions are test functions here.
@@ -23,7 +27,15 @@ pub(super) fn checked(conditions: &[Condition<'_>], dimension: usize) -> Result<
     test_functions.try_for_each(|one| one.checked(dimension))
 }
 
-/// What is known of the test functions among the conditions.
+/// Whether a condition is that a function vanishes, whose gradient is to be found.
+pub(super) fn is_function(condition: &Condition<'_>) -> bool {
+    matches!(
+        condition,
+        Condition::TestFunction(_) | Condition::UserFunction(_)
+    )
+}
+
+/// What is known of the functions among the conditions, in the order of these.
 pub(super) struct KnownSpectrum<'a> {
     pub spectrum: Option<&'a Spectrum>,
     pub gradients: &'a [TangentVector],
@@ -37,8 +49,9 @@ pub(super) fn weights(
     along: &[TangentVector],
     conditions: &[Condition<'_>],
     known: &KnownSpectrum<'_>,
+    family: &dyn ParametrisedField,
 ) -> Option<Vec<f64>> {
-    let mut test_functions = known.gradients.iter().zip(known.by_closing);
+    let mut functions = known.gradients.iter().zip(known.by_closing);
     let mut rows = Vec::with_capacity(conditions.len());
     for condition in conditions {
         let (slopes, missing): (Vec<f64>, f64) = match condition {
@@ -50,11 +63,16 @@ pub(super) fn weights(
                 along.iter().map(|t| t.parameters[*i]).collect(),
                 value - site.at[*i] - closing.parameters[*i],
             ),
-            Condition::TestFunction(test_function) => {
-                let (gradient, by_closing) = test_functions.next()?;
+            Condition::TestFunction(_) | Condition::UserFunction(_) => {
+                let (gradient, by_closing) = functions.next()?;
+                let value = match condition {
+                    Condition::UserFunction(which) => of_orbit(family, *which, site),
+                    Condition::TestFunction(test_function) => test_function.of(known.spectrum?),
+                    _ => return None,
+                };
                 (
                     along.iter().map(|t| gradient.dot(t)).collect(),
-                    -test_function.of(known.spectrum?) - by_closing,
+                    -value - by_closing,
                 )
             }
         };

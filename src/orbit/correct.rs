@@ -6,7 +6,7 @@
 //! a test function for a bifurcation, a value for a parameter. At folds nothing special happens.
 
 use super::arc::Tracer;
-use super::conditions::{Condition, KnownSpectrum, checked, weights};
+use super::conditions::{Condition, KnownSpectrum, checked, is_function, weights};
 use super::continuation_point::{ContinuationPoint, TangentVector};
 use super::family::ParametrisedField;
 use super::goal::Goal;
@@ -281,7 +281,7 @@ impl<'a> Corrector<'a> {
         guess.shooting.checked(self.family.dimension())?;
         self.suit(&guess)?;
         let mut reached = (0, f64::INFINITY);
-        let tested = conditions.iter().any(|one| test_function(one).is_some());
+        let tested = conditions.iter().any(is_function);
         let is_large = guess.shooting.extent() > LARGE;
         let coarse = self.coarse && planes.is_some() && is_large && !tested;
         let again = coarse.then(|| guess.clone());
@@ -316,7 +316,7 @@ impl<'a> Corrector<'a> {
         let mut gradients: Option<Vec<TangentVector>> = None;
         let mut ways = Vec::new();
         let (mut first, mut before, mut last) = (f64::INFINITY, f64::INFINITY, f64::INFINITY);
-        let tested = conditions.iter().any(|one| test_function(one).is_some());
+        let tested = conditions.iter().any(is_function);
         // What the next correction will be.
         let mut expected = f64::INFINITY;
         for iterations in 1..=goal.iterations {
@@ -343,7 +343,14 @@ impl<'a> Corrector<'a> {
                 gradients: &known,
                 by_closing: &by_closing,
             };
-            let weights = weights(&site, &closing, &along, conditions, &known_here)?;
+            let weights = weights(
+                &site,
+                &closing,
+                &along,
+                conditions,
+                &known_here,
+                self.family,
+            )?;
             let mut correction = closing;
             for (weight, direction) in weights.iter().zip(&along) {
                 correction = correction.plus(*weight, direction);
@@ -403,6 +410,9 @@ impl<'a> Corrector<'a> {
                 let all = conditions.iter().filter_map(test_function);
                 all.map(|i| i.of(&spectrum).abs()).fold(0.0, f64::max) < NEAR
             });
+            // Those of the user's functions cost little, and what they are told to hold shows in every row.
+            let users = |one: &Condition<'_>| matches!(one, Condition::UserFunction(_));
+            let near = near && !conditions.iter().any(users);
             gradients = (near && size < SLOW * last).then_some(known);
             (before, last) = (last, size);
         }

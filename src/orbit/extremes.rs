@@ -1,6 +1,7 @@
 //! How far an orbit goes: the least and greatest values of its variables and slip rates, on the series along it.
 
 use super::arc::Tracer;
+use super::profile::Digits;
 use super::settle::axis;
 use super::shooting_nodes::ShootingNodes;
 use super::solve::OrbitAccuracy;
@@ -24,17 +25,24 @@ pub(super) struct Extremes {
     pub passage: Option<(f64, Vector)>,
 }
 
-/// The least and greatest value of every variable along an orbit, to some six digits.
+/// The least and greatest value of every variable along an orbit.
 ///
 /// # Errors
 /// [`crate::Error::Dimension`] and [`crate::Error::Parameter`] for nodes with another number of variables than the field; those of
 /// the flow.
-pub fn ranges(field: &AnyField<'_>, shooting: &ShootingNodes) -> Result<Vec<(f64, f64)>> {
-    /// Tolerance of the run.
-    const ROUGH: f64 = 1e-8;
+pub fn ranges(
+    field: &AnyField<'_>,
+    shooting: &ShootingNodes,
+    digits: Digits,
+) -> Result<Vec<(f64, f64)>> {
     shooting.checked(field.dimension())?;
     let method = method_for(field, shooting);
-    let tracer = Tracer::for_orbit(method, ROUGH, (MAX_STEPS, usize::MAX))?;
+    let [explicit, implicit] = digits.tolerances();
+    let tolerance = match (digits, method) {
+        (Digits::All, Choice::Auto | Choice::Taylor) => explicit,
+        _ => implicit,
+    };
+    let tracer = Tracer::for_orbit(method, tolerance, (MAX_STEPS, usize::MAX))?;
     Ok(extremes_by(tracer, field, shooting, None)?.ranges)
 }
 

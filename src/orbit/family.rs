@@ -2,6 +2,7 @@
 
 use super::continuation_point::ContinuationPoint;
 use super::interface_system::InterfaceSystem;
+use super::user_function::Solution;
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
 use crate::field::{Matrix, State, Vector, place, state, vector};
@@ -49,6 +50,12 @@ pub trait ParametrisedField: Sync {
     /// The units of the variables, where lengths are told in others.
     fn units(&self) -> Option<&[f64]> {
         None
+    }
+
+    /// The value of the user's function of this number for a solution at these coordinates, in no unit that is known. NaN where it is undefined, or
+    /// there is none.
+    fn user_function(&self, _which: usize, _of: Solution<'_>, _at: [f64; 2]) -> f64 {
+        f64::NAN
     }
 }
 

@@ -51,7 +51,7 @@ impl OrbitCurve<'_, '_> {
     pub(super) fn keeps_its_sense(&self, from: &DirectedPoint, to: &DirectedPoint) -> bool {
         /// Of the test function: next to a Hopf point its sign is rounding.
         const SMALL: f64 = 1e-6;
-        let (None, &[free]) = (self.settings.test_function, &self.settings.free[..]) else {
+        let (None, &[free]) = (self.settings.condition, &self.settings.free[..]) else {
             return true;
         };
         let [a, b] = [from, to].map(|at| {

@@ -1,16 +1,17 @@
-//! How test functions change as an orbit is moved, which Newton's method needs where one is among its conditions.
+//! How test functions, and the user's, change as an orbit is moved, which Newton's method needs where one is among its conditions.
 
-use super::conditions::Condition;
+use super::conditions::{Condition, is_function};
 use super::continuation_point::{ContinuationPoint, TangentVector};
 use super::correct::{Corrector, Regular};
 use super::linear::{Free, Linear};
 use super::test_function::{Spectrum, TestFunction};
+use super::user_function::{self, of_orbit};
 
 /// The step by which test functions are differentiated.
 const STEP: f64 = 1e-6;
 
 impl Corrector<'_> {
-    /// The gradients of all test functions among the conditions, in the directions in which the orbit can move.
+    /// The gradients of all functions among the conditions, in the directions in which the orbit can move.
     pub(super) fn gradients(
         &mut self,
         site: &ContinuationPoint,
@@ -19,16 +20,21 @@ impl Corrector<'_> {
         spectrum: &Spectrum,
         conditions: &[Condition<'_>],
     ) -> Option<Vec<TangentVector>> {
-        let test_functions: Vec<TestFunction> =
-            conditions.iter().filter_map(test_function).collect();
-        if test_functions.is_empty() {
-            return Some(Vec::new());
-        }
-        let mut sums: Vec<Option<TangentVector>> = vec![None; test_functions.len()];
+        let functions: Vec<_> = conditions.iter().filter(|one| is_function(one)).collect();
+        let tested = functions.iter().any(|one| test_function(one).is_some());
+        let mut sums: Vec<Option<TangentVector>> = vec![None; functions.len()];
         for direction in along {
-            let change = self.change(site, linear, direction, spectrum)?;
-            for (sum, test_function) in sums.iter_mut().zip(&test_functions) {
-                let slope = test_function.change_along(spectrum, &change);
+            let change = match tested {
+                true => Some(self.change(site, linear, direction, spectrum)?),
+                false => None,
+            };
+            for (sum, function) in sums.iter_mut().zip(&functions) {
+                let slope = match function {
+                    Condition::UserFunction(which) => {
+                        user_function::slope(self.family, *which, site, direction)
+                    }
+                    _ => test_function(function)?.change_along(spectrum, change.as_ref()?),
+                };
                 let part = direction.clone().scaled(slope);
                 *sum = Some(match sum.take() {
                     None => part,
@@ -39,7 +45,7 @@ impl Corrector<'_> {
         sums.into_iter().collect()
     }
 
-    /// What closing the orbit will add to the test functions among the conditions. Where the gaps are small that is for the next
+    /// What closing the orbit will add to the functions among the conditions. Where the gaps are small that is for the next
     /// iteration to see.
     pub(super) fn by_closing(
         &mut self,
@@ -51,17 +57,26 @@ impl Corrector<'_> {
     ) -> Option<Vec<f64>> {
         /// Smaller closings are not looked at.
         const SMALL: f64 = 1e-7;
-        let test_functions: Vec<TestFunction> =
-            conditions.iter().filter_map(test_function).collect();
+        let functions: Vec<_> = conditions.iter().filter(|one| is_function(one)).collect();
         let length = closing.dot(closing).sqrt();
         let (size, stretch) = site.size(closing);
-        if test_functions.is_empty() || size.max(stretch) < SMALL || length == 0.0 {
-            return Some(vec![0.0; test_functions.len()]);
+        if functions.is_empty() || size.max(stretch) < SMALL || length == 0.0 {
+            return Some(vec![0.0; functions.len()]);
         }
         let direction = closing.clone().scaled(1.0 / length);
-        let change = self.change(site, linear, &direction, spectrum)?;
-        let of = |i: &TestFunction| length * i.change_along(spectrum, &change);
-        Some(test_functions.iter().map(of).collect())
+        let change = match functions.iter().any(|one| test_function(one).is_some()) {
+            true => Some(self.change(site, linear, &direction, spectrum)?),
+            false => None,
+        };
+        let family = self.family;
+        let of = |function: &&Condition<'_>| match function {
+            Condition::UserFunction(which) => {
+                let closed = of_orbit(family, *which, &site.moved(closing, 1.0));
+                Some(closed - of_orbit(family, *which, site))
+            }
+            _ => Some(length * test_function(function)?.change_along(spectrum, change.as_ref()?)),
+        };
+        functions.iter().map(of).collect()
     }
 
     /// What a small tangent vector of an orbit changes its spectrum by.

@@ -45,6 +45,7 @@ mod spread;
 mod stiffness;
 mod switch;
 mod test_function;
+mod user_function;
 mod winding;
 mod within;
 
@@ -74,7 +75,7 @@ pub use over_interfaces::OverInterfaces;
 pub use over_text::{Coordinate, OverText};
 pub(crate) use periodic_schur::LogEigenvalue;
 pub use phase_response::{PhaseResponse, phase_response};
-pub use profile::{Profile, profile, profile_of};
+pub use profile::{Digits, Profile, profile, profile_of};
 pub use sensitivity::{Families, Sensitivity, sensitivity};
 pub use shooting::{Closed, close};
 pub use shooting_nodes::ShootingNodes;
@@ -84,6 +85,8 @@ pub use solve::{Orbit, OrbitAccuracy};
 pub(crate) use stiffness::method_for;
 pub use switch::Switch;
 pub use test_function::{Spectrum, TestFunction};
+pub(crate) use user_function::beyond_noise;
+pub use user_function::{Solution, UserFunctions, WithFunctions};
 pub use within::{AlongArcs, SplitRate, within_clusters};
 
 use crate::error::Error;

@@ -36,7 +36,7 @@ impl OrbitCurve<'_, '_> {
     }
 
     fn spread(&self) -> Spread {
-        let spread = match self.settings.test_function {
+        let spread = match self.settings.condition {
             None => Spread::BRANCH,
             Some(_) => Spread::CURVE,
         };

@@ -12,6 +12,7 @@ use super::linear::Linear;
 use super::shooting::relative;
 use super::shooting_nodes::ShootingNodes;
 use super::test_function::{Spectrum, TestFunction};
+use super::user_function;
 use crate::field::{Matrix, Vector};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -112,7 +113,7 @@ impl Corrector<'_> {
         let mut signs = Signs::new();
         for _ in 0..PROBES {
             let noisy = orbit.linear.noisy(shooting, &mut signs);
-            let tangent = self.answer(orbit, &noisy, free, conditions)?;
+            let tangent = self.answer(orbit, &noisy, free, conditions, &mut signs)?;
             for i in 0..2 {
                 squares.parameters[i] += tangent.parameters[i].powi(2);
             }
@@ -141,7 +142,7 @@ impl Corrector<'_> {
         let (mut sum, mut signs) = (0.0, Signs::new());
         for _ in 0..PROBES {
             let noisy = orbit.linear.noisy(&orbit.site.shooting, &mut signs);
-            let tangent = self.answer(orbit, &noisy, free, &[plane])?;
+            let tangent = self.answer(orbit, &noisy, free, &[plane], &mut signs)?;
             let changes = [orbit.direct(&noisy), self.by_tangent(orbit, &tangent)?];
             let change = changes.map(|by| test_function.change_along(&orbit.spectrum, &by));
             sum += (change[0] + change[1]).powi(2);
@@ -156,6 +157,7 @@ impl Corrector<'_> {
         noisy: &Linear,
         free: &[usize],
         conditions: &[Condition<'_>],
+        signs: &mut Signs,
     ) -> Option<TangentVector> {
         // The directions are those without errors.
         let scale = self.family.scale(orbit.site.at);
@@ -176,6 +178,13 @@ impl Corrector<'_> {
                 Condition::Plane(across, _) => (slopes(&|t| across.dot(t)), -across.dot(&closing)),
                 Condition::Parameter(i, _) => {
                     (slopes(&|t| t.parameters[*i]), -closing.parameters[*i])
+                }
+                Condition::UserFunction(which) => {
+                    let gradient = gradients.next()?;
+                    let (family, site) = (self.family, &orbit.site);
+                    let change = user_function::slope(family, *which, site, &closing);
+                    let own = user_function::rounding_at(family, *which, site);
+                    (slopes(&|t| gradient.dot(t)), -change - own * signs.next())
                 }
                 Condition::TestFunction(test_function) => {
                     let gradient = gradients.next()?;

@@ -7,8 +7,11 @@ use super::correct::{Corrector, Regular};
 use super::goal::Goal;
 use super::new_nodes::no_nodes;
 use super::test_function::TestFunction;
+use super::user_function::{self, of_orbit_beyond_noise};
 use super::winding::{Turns, quarter_turn};
-use crate::continuation::{self, Continuation, CurveStep, SolutionCurve, StepControl, Stop};
+use crate::continuation::{
+    self, Continuation, CurveStep, SolutionCurve, StepControl, Stop, changes_sign,
+};
 use crate::error::{Error, Result};
 use std::sync::Arc as Shared;
 
@@ -27,8 +30,8 @@ pub struct DirectedPoint {
 pub struct PalcSettings {
     /// The free parameters: one for a branch, both for a bifurcation.
     pub free: Vec<usize>,
-    /// The bifurcation.
-    pub test_function: Option<TestFunction>,
+    /// The condition of a curve: a test function of its bifurcation, or the user's function of its orbits, vanishes.
+    pub condition: Option<WatchedFunction>,
     /// The longest step.
     pub longest: f64,
 }
@@ -43,6 +46,7 @@ impl WatchedFunction {
             WatchedFunction::TestFunction(test_function) => Condition::TestFunction(test_function),
             WatchedFunction::Value(i, value) => Condition::Parameter(i, value),
             WatchedFunction::Turn(_) => Condition::TestFunction(TestFunction::Fold),
+            WatchedFunction::UserFunction(which) => Condition::UserFunction(which),
         }
     }
 }
@@ -84,7 +88,7 @@ impl PalcSettings {
     pub fn branch(parameter: usize, longest: f64) -> Self {
         PalcSettings {
             free: vec![parameter],
-            test_function: None,
+            condition: None,
             longest,
         }
     }
@@ -93,14 +97,23 @@ impl PalcSettings {
     pub fn locus(test_function: TestFunction, longest: f64) -> Self {
         PalcSettings {
             free: vec![0, 1],
-            test_function: Some(test_function),
+            condition: Some(WatchedFunction::TestFunction(test_function)),
+            longest,
+        }
+    }
+
+    /// A curve of orbits at which the user's function of this number vanishes.
+    pub fn held(which: usize, longest: f64) -> Self {
+        PalcSettings {
+            free: vec![0, 1],
+            condition: Some(WatchedFunction::UserFunction(which)),
             longest,
         }
     }
 
     /// The curve's own conditions: none on a branch.
     pub(crate) fn own<'a>(&self) -> Vec<Condition<'a>> {
-        let own = self.test_function.map(Condition::TestFunction);
+        let own = self.condition.map(WatchedFunction::condition);
         own.into_iter().collect()
     }
 
@@ -248,7 +261,7 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
         if !here.site.shooting.is_like(&next.site.shooting, LARGER) {
             return Err(not_near("a step to an orbit of about the same shape"));
         }
-        if self.settings.test_function.is_none() {
+        if self.settings.condition.is_none() {
             self.goes_on(from, distance, (&predicted, &next))?;
         }
         let first = next.first;
@@ -308,6 +321,9 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
         match watch {
             WatchedFunction::Turn(i) => at.direction.parameters[i],
             WatchedFunction::Value(i, value) => at.here.site.at[i] - value,
+            WatchedFunction::UserFunction(which) => {
+                of_orbit_beyond_noise(self.corrector.family, which, &at.here.site)
+            }
             WatchedFunction::TestFunction(test_function) => {
                 let at = &at.here.spectrum;
                 test_function.of(at) / test_function.size(at)
@@ -330,6 +346,11 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
         let slope = |watch: &WatchedFunction| match *watch {
             WatchedFunction::Turn(_) => None,
             WatchedFunction::Value(i, _) => Some(at.direction.parameters[i]),
+            WatchedFunction::UserFunction(which) => {
+                let family = self.corrector.family;
+                let slope = user_function::slope(family, which, &at.here.site, &at.direction);
+                Some(slope)
+            }
             WatchedFunction::TestFunction(test_function) => {
                 let change = test_function.change_along(spectrum, by.as_ref()?);
                 Some(change / test_function.size(spectrum))
@@ -339,7 +360,10 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
     }
 
     fn is_costly(&self, watch: WatchedFunction) -> bool {
-        matches!(watch, WatchedFunction::TestFunction(_))
+        matches!(
+            watch,
+            WatchedFunction::TestFunction(_) | WatchedFunction::UserFunction(_)
+        )
     }
 
     fn is_straight(&self, step: &CurveStep<DirectedPoint>) -> bool {
@@ -350,7 +374,7 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
 
     /// Along a curve of bifurcations a turn has no condition of its own.
     fn solves(&self, watch: WatchedFunction) -> bool {
-        !matches!(watch, WatchedFunction::Turn(_)) || self.settings.test_function.is_none()
+        !matches!(watch, WatchedFunction::Turn(_)) || self.settings.condition.is_none()
     }
 
     fn solve(
@@ -389,7 +413,10 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
         at: &DirectedPoint,
         step: &CurveStep<DirectedPoint>,
     ) -> bool {
-        self.settings.test_function.is_some() || certain(self, change, &at.here, step)
+        if let (watch @ WatchedFunction::UserFunction(_), _) = change {
+            return changes_sign(self, watch, at, step.length);
+        }
+        self.settings.condition.is_some() || certain(self, change, &at.here, step)
     }
 }
 

@@ -10,6 +10,25 @@ use crate::integrate::{AnyField, Control};
 use crate::number::polynomial::evaluate;
 use crate::series::{Section, Zeros};
 
+/// To how many digits what is told of an orbit is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Digits {
+    /// Some six, as for pictures.
+    Six,
+    /// All that the orbit has.
+    All,
+}
+
+impl Digits {
+    /// The tolerance of the run: of an explicit method, and of an implicit one, which rounds more.
+    pub(super) fn tolerances(self) -> [f64; 2] {
+        match self {
+            Digits::Six => [1e-7, 1e-8],
+            Digits::All => [1e-15, 1e-13],
+        }
+    }
+}
+
 /// Along one cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Profile {
@@ -23,18 +42,22 @@ pub struct Profile {
     pub slip_rate: [f64; 2],
 }
 
-/// Of a cycle of a slab, in (tau, ln psi_1, ln psi_2) or (tau, ln psi), to some six digits.
+/// Of a cycle of a slab, in (tau, ln psi_1, ln psi_2) or (tau, ln psi).
 ///
 /// # Errors
 /// [`Error::Dimension`] for nodes of other dimensions; those of the flow.
-pub fn profile(slab: &InterfaceSystem, shooting: &ShootingNodes) -> Result<Profile> {
+pub fn profile(
+    slab: &InterfaceSystem,
+    shooting: &ShootingNodes,
+    digits: Digits,
+) -> Result<Profile> {
     let whole = slab.whole();
     let field = if shooting.dimension() == 3 {
         AnyField::of::<3>(&*whole)
     } else {
         AnyField::new::<2>(slab.plane())
     };
-    profile_of(&field, &|y| whole.slip_rates(y), shooting)
+    profile_of(&field, &|y| whole.slip_rates(y), shooting, digits)
 }
 
 /// The same of any interfaces: by their field, and their slip rates in (tau, ln psi_1, ln psi_2).
@@ -45,9 +68,9 @@ pub fn profile_of(
     field: &AnyField<'_>,
     slip_rates: &dyn Fn(&State<3>) -> [f64; 2],
     shooting: &ShootingNodes,
+    digits: Digits,
 ) -> Result<Profile> {
-    /// Tolerance of the run.
-    const ROUGH: f64 = 1e-7;
+    let [tolerance, _] = digits.tolerances();
     let dimension = shooting.dimension();
     let known = matches!(dimension, 2 | 3);
     Error::dimension_unless(known, "a cycle of a slab", "2 or 3", dimension)?;
@@ -57,7 +80,7 @@ pub fn profile_of(
         bottom: f64::INFINITY,
         integral: 0.0,
     };
-    seen.go(field, shooting, &mut Tracer::taylor(ROUGH)?)?;
+    seen.go(field, shooting, &mut Tracer::taylor(tolerance)?)?;
     let (top, w) = seen.top;
     Ok(Profile {
         mean_stress: seen.integral / shooting.period(),

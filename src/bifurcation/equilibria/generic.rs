@@ -18,6 +18,7 @@ use crate::error::{Error, Result};
 use crate::field::{Matrix, Vector, place};
 use crate::integrate::{AnyExact, AnyField, of_dimension};
 use crate::number::{self, null_vector};
+use crate::orbit::beyond_noise;
 use nalgebra::Complex;
 use std::ops::ControlFlow;
 
@@ -59,12 +60,14 @@ pub struct FoundEquilibrium {
     pub crossing: Option<BranchCrossing>,
     /// By real part, the largest first.
     pub eigenvalues: Vec<Complex<f64>>,
-    /// `LP`, `BP`, `HB`, `UZ`, `EP`, where the point is one of these.
+    /// `LP`, `BP`, `HB`, `UZ`, `UF`, `EP`, where the point is one of these.
     pub label: Option<Label>,
     /// Of eigenvalues that cross the imaginary axis together, more than one or one pair, how many there are; else 0.
     pub together: usize,
     /// Where several eigenvalues are 0, that point as far as branches that begin there need it.
     pub multiple: Option<MultiplePoint>,
+    /// Where one of the user's functions is zero, its number.
+    pub zero_of: Option<usize>,
     /// At a bound of a variable, where the branch leaves the box: which variable, and whether the bound is the upper one.
     pub leaves: Option<(usize, bool)>,
     /// Of the oscillation at a Hopf point.
@@ -101,6 +104,61 @@ impl Onward {
             across: false,
         }
     }
+}
+
+/// The user's functions of (state, parameter) whose zeros are looked for along a branch.
+#[derive(Clone, Copy)]
+pub struct Watch<'a> {
+    /// How many there are.
+    pub count: usize,
+    /// The value of one of them.
+    pub of: &'a dyn Fn(usize, &Vector, f64) -> f64,
+}
+
+impl Watch<'_> {
+    /// No functions.
+    pub const NOTHING: Watch<'static> = Watch {
+        count: 0,
+        of: &|_, _, _| f64::NAN,
+    };
+
+    /// A value, or 0 within its noise.
+    pub(super) fn value(&self, which: usize, y: &Vector, p: f64) -> f64 {
+        /// What a point of a continuation may be off, in units of 1 + |x|.
+        const OFF: f64 = 1e-12;
+        let place = y.push(p);
+        beyond_noise((self.of)(which, y, p), |time| {
+            self.at(which, &moved_by(&place, OFF, time))
+        })
+    }
+
+    /// A value at a point of (state, parameter).
+    fn at(&self, which: usize, place: &Vector) -> f64 {
+        let n = place.len() - 1;
+        (self.of)(which, &place.rows(0, n).into_owned(), place[n])
+    }
+}
+
+/// Numbers with errors of this size, in units of 1 + |x|.
+pub(super) fn moved_by(place: &Vector, off: f64, time: usize) -> Vector {
+    Vector::from_fn(place.len(), |i, _| {
+        place[i] + sign(i, time) * off * (1.0 + place[i].abs())
+    })
+}
+
+/// How a function changes with each of the numbers that it is of.
+pub(super) fn gradient(of: &dyn Fn(&Vector) -> f64, at: &Vector) -> Vector {
+    /// In units of 1 + |x|.
+    const STEP: f64 = 1e-5;
+    Vector::from_fn(at.len(), |i, _| {
+        let step = STEP * (1.0 + at[i].abs());
+        let beside = |step: f64| {
+            let mut x = at.clone();
+            x[i] += step;
+            of(&x)
+        };
+        (beside(step) - beside(-step)) / (2.0 * step)
+    })
 }
 
 /// Part of 1 + |p| by which the parameter is changed for a derivative.
@@ -181,6 +239,20 @@ impl<'a> FieldEquilibria<'a> {
         settings: &Settings,
         seen: &mut dyn FnMut(&FoundEquilibrium) -> ControlFlow<()>,
     ) -> Result<Branch> {
+        self.follow_watching(onward, settings, Watch::NOTHING, seen)
+    }
+
+    /// The same with the zeros of functions on the way.
+    ///
+    /// # Errors
+    /// As of [`Self::follow`].
+    pub fn follow_watching(
+        &self,
+        onward: &Onward,
+        settings: &Settings,
+        watch: Watch<'_>,
+        seen: &mut dyn FnMut(&FoundEquilibrium) -> ControlFlow<()>,
+    ) -> Result<Branch> {
         let dimension = self.field(onward.parameter).dimension();
         of_dimension(onward.state.len(), dimension)?;
         let start = Start {
@@ -193,7 +265,7 @@ impl<'a> FieldEquilibria<'a> {
             family: self,
             dimension,
         };
-        let mut look = EquilibriumObserver::new(self, settings.longest_step, seen);
+        let mut look = EquilibriumObserver::new(self, watch, settings.longest_step, seen);
         let mut branch = follow(&problem, &start, settings, &mut look)?;
         if look.jumped {
             branch.stopped = Stop::Failed("another branch is too close to stay on this one".into());
@@ -262,6 +334,48 @@ impl<'a> FieldEquilibria<'a> {
         }
         let off = square(&x).try_inverse()?.abs() * noise * SAFETY;
         let off = off[n - 1] + f64::EPSILON * x[n].abs();
+        let finite = off.is_finite() && x.iter().all(|x| x.is_finite());
+        finite.then(|| (x.rows(0, n).into_owned(), x[n], off))
+    }
+
+    /// The equilibrium near another one at which a function is zero, and the error bound of the parameter.
+    pub(super) fn zero_of(
+        &self,
+        (watch, which): (&Watch<'_>, usize),
+        (state, parameter): (&Vector, f64),
+    ) -> Option<(Vector, f64, f64)> {
+        /// Corrections, which end in the last digits; so many changes in the last digits, and what their largest residual counts.
+        const ITERATIONS: usize = 8;
+        const TRIED: usize = 8;
+        const SAFETY: f64 = 4.0;
+        let n = state.len();
+        let residuals = |x: &Vector, digits: usize| {
+            let exact = self.exact(&x.rows(0, n).into_owned(), x[n]);
+            let last = match digits {
+                0 => watch.at(which, x),
+                _ => 0.0,
+            };
+            exact.f[digits].push(last)
+        };
+        let square = |x: &Vector| {
+            let mut rows = self.extended(&x.rows(0, n).into_owned(), x[n]);
+            rows = rows.insert_row(n, 0.0);
+            let slope = gradient(&|x| watch.at(which, x), x);
+            rows.set_row(n, &slope.transpose());
+            rows
+        };
+        let mut x = state.push(parameter);
+        for _ in 0..ITERATIONS {
+            x -= square(&x).lu().solve(&residuals(&x, 0))?;
+        }
+        let mut noise = residuals(&x, 1).abs();
+        for time in 0..TRIED {
+            let moved = Vector::from_fn(n + 1, |i, _| x[i] * (1.0 + f64::EPSILON * sign(i, time)));
+            let left = residuals(&moved, 0);
+            noise = noise.zip_map(&left, |most: f64, x: f64| most.max(x.abs()));
+        }
+        let off = square(&x).try_inverse()?.abs() * noise * SAFETY;
+        let off = off[n] + f64::EPSILON * x[n].abs();
         let finite = off.is_finite() && x.iter().all(|x| x.is_finite());
         finite.then(|| (x.rows(0, n).into_owned(), x[n], off))
     }

@@ -60,8 +60,10 @@ pub struct EquilibriumCurvePoint {
     pub frequency: Option<f64>,
     /// The first Lyapunov coefficient of a Hopf point, with <q, q> = 1: positive where the small orbits are unstable.
     pub coefficient: Option<f64>,
-    /// `CP`, `BT`, `ZH`, `GH`, `UZ`, `EP`, where the point is one of these.
+    /// `CP`, `BT`, `ZH`, `GH`, `UZ`, `UF`, `EP`, where the point is one of these.
     pub label: Option<Label>,
+    /// Where one of the user's functions is zero, its number.
+    pub zero_of: Option<usize>,
     /// The coordinates may be off by this; known of special points.
     pub uncertainty: Option<[f64; 2]>,
 }
@@ -73,6 +75,8 @@ pub struct FirstCoordinate {
     pub range: (f64, f64),
     /// Values to land on.
     pub wanted: Vec<f64>,
+    /// How many of the family's user functions are looked at for zeros.
+    pub functions: usize,
 }
 
 impl Default for FirstCoordinate {
@@ -81,6 +85,7 @@ impl Default for FirstCoordinate {
         FirstCoordinate {
             range: (f64::NEG_INFINITY, f64::INFINITY),
             wanted: Vec::new(),
+            functions: 0,
         }
     }
 }

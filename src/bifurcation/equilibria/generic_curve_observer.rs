@@ -2,14 +2,19 @@
 
 use super::bialternate::{CHANGE, lyapunov, lyapunov_by};
 use super::critical::{Slope, sum_function, zero_function};
-use super::generic_curve::{EquilibriumBifurcation, EquilibriumCurvePoint, FirstCoordinate};
+use super::generic::moved_by;
+use super::generic_curve::{
+    EquilibriumBifurcation, EquilibriumCurve, EquilibriumCurvePoint, FirstCoordinate,
+};
 use super::generic_curve_problem::{Extended, alike, frequency, sign};
 use crate::bifurcation::Label;
 use crate::continuation::{CurveObserver, CurvePoint, PointKind};
 use crate::error::Result;
 use crate::field::{Matrix, Vector};
 use crate::number::{eigenvalues, null_vector};
+use crate::orbit::{Solution, beyond_noise};
 use nalgebra::Complex;
+use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
 pub(super) struct Observer<'a, 'b> {
@@ -67,6 +72,28 @@ impl Observer<'_, '_> {
         })
     }
 
+    /// A user function at unknowns of the curve.
+    fn user_function(&self, which: usize, u: &Vector) -> f64 {
+        let n = u.len() - 2;
+        let (state, at) = (self.problem.state(u), [u[n], u[n + 1]]);
+        let EquilibriumCurve { family, kind } = *self.problem.0;
+        let omega = match kind {
+            EquilibriumBifurcation::Hopf => frequency(&family.field(at).jacobian(&state)),
+            _ => None,
+        };
+        let equilibrium = Solution::Equilibrium {
+            state: &state,
+            period: omega.map(|omega| TAU / omega),
+        };
+        family.user_function(which, equilibrium, at)
+    }
+
+    /// The number of the user function that a test function is.
+    fn users(&self, test: usize) -> Option<usize> {
+        let which = test.checked_sub(FUNCTIONS + self.values().count())?;
+        (which < self.first.functions).then_some(which)
+    }
+
     /// What the differences of the first Lyapunov coefficient are off, by twice their distance.
     fn difference_error(&self, i: usize, u: &Vector) -> f64 {
         if (self.problem.0.kind, i) != (EquilibriumBifurcation::Hopf, 0) {
@@ -88,7 +115,7 @@ impl Observer<'_, '_> {
 
     /// The values of the first coordinate that are landed on: the ends of its range, and those that are wanted.
     fn values(&self) -> impl Iterator<Item = f64> {
-        let FirstCoordinate { range, wanted } = self.first;
+        let FirstCoordinate { range, wanted, .. } = self.first;
         [range.0, range.1].into_iter().chain(wanted.iter().copied())
     }
 
@@ -164,10 +191,14 @@ impl Observer<'_, '_> {
         let along = &point.tangent;
         let n = point.u.len() - 1;
         let start = point.u.push(point.lambda);
+        let function = |u: &Vector, tangent: &Vector| match self.users(i) {
+            Some(which) => Some(self.user_function(which, u)),
+            None => Some(self.functions(u, tangent).ok()?[i]),
+        };
         // The point of the curve at a distance along the tangent, and the function there.
         let at = |s: f64| {
             let u = self.problem.across(&(&start + along * s), along)?;
-            let value = self.functions(&u, &self.problem.tangent(&u, along)?).ok()?[i];
+            let value = function(&u, &self.problem.tangent(&u, along)?)?;
             value.is_finite().then_some((u, value))
         };
         let beside = BESIDE * (1.0 + start.amax());
@@ -195,7 +226,7 @@ impl Observer<'_, '_> {
             let moved = Vector::from_fn(u.len(), |k, _| {
                 u[k] * (1.0 + sign(k, time) * 4.0 * f64::EPSILON)
             });
-            noise += (self.functions(&moved, &tangent).ok()?[i] - here).abs();
+            noise += (function(&moved, &tangent)? - here).abs();
         }
         noise += self.difference_error(i, &u);
         let off_along = noise / slope.abs();
@@ -214,6 +245,8 @@ impl Observer<'_, '_> {
 
 impl CurveObserver for Observer<'_, '_> {
     fn tests(&self, point: &CurvePoint) -> Result<Vec<f64>> {
+        /// What a point of the curve may be off, in units of 1 + |x|.
+        const OFF: f64 = 1e-12;
         let mut all = self
             .functions(&point.u.push(point.lambda), &point.tangent)?
             .to_vec();
@@ -226,7 +259,17 @@ impl CurveObserver for Observer<'_, '_> {
                 f64::NAN
             }
         }));
+        let here = point.u.push(point.lambda);
+        all.extend((0..self.first.functions).map(|which| {
+            beyond_noise(self.user_function(which, &here), |time| {
+                self.user_function(which, &moved_by(&here, OFF, time))
+            })
+        }));
         Ok(all)
+    }
+
+    fn is_users(&self, test: usize) -> bool {
+        self.users(test).is_some()
     }
 
     fn ends(&self, test: usize) -> bool {
@@ -243,9 +286,12 @@ impl CurveObserver for Observer<'_, '_> {
             mark => mark,
         };
         let mut special = None;
+        let is_sharp = |i: usize| i < FUNCTIONS || self.users(i).is_some();
+        let mut zero_of = None;
         if let PointKind::Zero(i) = mark
-            && i < FUNCTIONS
+            && is_sharp(i)
         {
+            zero_of = self.users(i);
             match self.sharp(i, point) {
                 // What is not known to some digits is no zero: of a function that jumps, or has a pole.
                 Some((u, off)) if off.iter().all(|&off| off < KNOWN) => special = Some((u, off)),
@@ -264,6 +310,7 @@ impl CurveObserver for Observer<'_, '_> {
         let label = match mark {
             PointKind::Step => None,
             PointKind::Zero(i) if self.ends(i) => Some(Label::Ep),
+            PointKind::Zero(_) if zero_of.is_some() => Some(Label::Uf),
             PointKind::Zero(i) if i > FUNCTIONS => Some(Label::Uz),
             PointKind::Zero(i) => match self.label(i, frequency, &jacobian) {
                 None => return ControlFlow::Continue(()),
@@ -274,7 +321,7 @@ impl CurveObserver for Observer<'_, '_> {
         };
         let uncertainty = match mark {
             PointKind::Step => None,
-            PointKind::Zero(i) if i < FUNCTIONS => special.map(|(_, off)| off),
+            PointKind::Zero(i) if is_sharp(i) => special.map(|(_, off)| off),
             PointKind::Zero(_) => {
                 let budget = self.problem.budget(&u, n);
                 budget.map(|budget| [0.0, budget[n + 1]])
@@ -293,6 +340,7 @@ impl CurveObserver for Observer<'_, '_> {
             frequency,
             coefficient,
             label,
+            zero_of,
             uncertainty,
         })
     }

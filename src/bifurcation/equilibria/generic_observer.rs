@@ -2,7 +2,7 @@
 
 use super::bialternate::{lyapunov, rounding_of};
 use super::critical::{is_large, least_of, sum_function};
-use super::generic::{FieldEquilibria, FoundEquilibrium};
+use super::generic::{FieldEquilibria, FoundEquilibrium, Watch};
 use super::generic_crossing::{BranchPoint, branch_point};
 use super::generic_curve_problem::sign;
 use super::multiple::MultiplePoint;
@@ -27,6 +27,7 @@ const LABELS: [Label; 3] = [Label::Lp, Label::Bp, Label::Hb];
 /// What is watched along a branch, and what is known of its last points.
 pub(super) struct EquilibriumObserver<'a, 'b> {
     family: &'a FieldEquilibria<'b>,
+    watch: Watch<'a>,
     /// Whether a step has come onto another branch.
     pub jumped: bool,
     /// The longest step.
@@ -49,14 +50,16 @@ pub(super) struct EquilibriumObserver<'a, 'b> {
 }
 
 impl<'a, 'b> EquilibriumObserver<'a, 'b> {
-    /// Along a branch with steps up to this length.
+    /// Along a branch with steps up to this length, with the zeros of functions on the way.
     pub fn new(
         family: &'a FieldEquilibria<'b>,
+        watch: Watch<'a>,
         longest: f64,
         seen: &'a mut dyn FnMut(&FoundEquilibrium) -> ControlFlow<()>,
     ) -> Self {
         EquilibriumObserver {
             family,
+            watch,
             jumped: false,
             longest,
             norm: 0.0,
@@ -226,6 +229,17 @@ impl EquilibriumObserver<'_, '_> {
             .is_some_and(|last| same(last, place))
     }
 
+    /// The number of the user's function that a test function is.
+    fn users(&self, test: usize) -> Option<usize> {
+        let which = test.checked_sub(LABELS.len())?;
+        (which < self.watch.count).then_some(which)
+    }
+
+    /// How many test functions there are before those of the bounds of the variables.
+    fn before_bounds(&self) -> usize {
+        LABELS.len() + self.watch.count
+    }
+
     /// What is known of a point.
     fn found(
         &self,
@@ -243,6 +257,7 @@ impl EquilibriumObserver<'_, '_> {
             label: None,
             together: 0,
             multiple: None,
+            zero_of: None,
             leaves: None,
             period: None,
             coefficient: None,
@@ -389,12 +404,17 @@ impl CurveObserver for EquilibriumObserver<'_, '_> {
             self.side(point),
             self.sums(y, p),
         ];
+        tests.extend((0..self.watch.count).map(|which| self.watch.value(which, y, p)));
         tests.extend(self.inside(y));
         Ok(tests)
     }
 
+    fn is_users(&self, test: usize) -> bool {
+        self.users(test).is_some()
+    }
+
     fn ends(&self, test: usize) -> bool {
-        test >= LABELS.len()
+        test >= self.before_bounds()
     }
 
     fn finest(&self) -> f64 {
@@ -453,6 +473,7 @@ impl CurveObserver for EquilibriumObserver<'_, '_> {
         }
         let label = match mark {
             PointKind::Step => None,
+            PointKind::Zero(i) if self.is_users(i) => Some(Label::Uf),
             PointKind::Zero(i) => Some(LABELS.get(i).copied().unwrap_or(Label::Ep)),
             PointKind::Wanted(_) => Some(Label::Uz),
             PointKind::Begin | PointKind::Lowest | PointKind::Highest => Some(Label::Ep),
@@ -462,7 +483,7 @@ impl CurveObserver for EquilibriumObserver<'_, '_> {
         };
         let mut found = FoundEquilibrium { label, ..found };
         if let PointKind::Zero(i) = mark
-            && let Some(bound) = i.checked_sub(LABELS.len())
+            && let Some(bound) = i.checked_sub(self.before_bounds())
         {
             let (variable, upper) = (bound / 2, bound % 2 == 1);
             found.leaves = Some((variable, upper));
@@ -470,6 +491,20 @@ impl CurveObserver for EquilibriumObserver<'_, '_> {
             found.state[variable] = if upper { high } else { low };
             let landed = landed.or_else(|| self.family.landed((&found.state, p), variable));
             if let Some((state, parameter, off)) = landed {
+                (found.state, found.parameter) = (state, parameter);
+                found.uncertainty = Some(off);
+            }
+        }
+        if let PointKind::Zero(i) = mark
+            && let Some(which) = self.users(i)
+        {
+            let sharp = self.family.zero_of((&self.watch, which), (y, p));
+            found.zero_of = Some(which);
+            found.uncertainty = Some(f64::INFINITY);
+            let here = y.push(p);
+            if let Some((state, parameter, off)) = sharp
+                && same(&state.push(parameter), &here)
+            {
                 (found.state, found.parameter) = (state, parameter);
                 found.uncertainty = Some(off);
             }

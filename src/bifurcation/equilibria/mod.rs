@@ -32,6 +32,7 @@ mod row;
 mod special;
 mod stationary;
 mod unexplained;
+mod user_zeros;
 mod vertical;
 
 use super::{BranchRequest, EventObserver, LocusKind, LocusRequest, within};

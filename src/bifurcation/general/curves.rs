@@ -15,7 +15,7 @@ use crate::error::Result;
 use crate::field::{Matrix, Vector};
 use crate::integrate::AnyField;
 use crate::number::Uncertain;
-use crate::orbit::ParametrisedField;
+use crate::orbit::{ParametrisedField, Solution};
 use std::f64::consts::TAU;
 use std::ops::ControlFlow::{self, Break, Continue};
 
@@ -92,6 +92,7 @@ pub(in crate::bifurcation) fn looked_along<R>(
         beyond: curve.beyond[along],
         held,
         at: Vec::new(),
+        watch: Vec::new(),
         orbit: None,
         found: None,
         hopfs: None,
@@ -151,6 +152,10 @@ impl ParametrisedField for Exchanged<'_> {
 
     fn units(&self) -> Option<&[f64]> {
         self.0.units()
+    }
+
+    fn user_function(&self, which: usize, of: Solution<'_>, at: [f64; 2]) -> f64 {
+        self.0.user_function(which, of, in_order(1, at))
     }
 }
 
@@ -297,6 +302,7 @@ impl EquilibriumCurves<'_, '_> {
         let first = FirstCoordinate {
             range: ranges[0],
             wanted: values(0),
+            functions: self.curve.watch.len(),
         };
         let (mut begun, mut begin, mut last) = (false, None, None);
         let passes = &mut self.passes;
@@ -317,7 +323,10 @@ impl EquilibriumCurves<'_, '_> {
                 }
                 // No curve ends where it is begun.
                 let label = found.label.filter(|label| !begins || *label != Label::Ep);
-                let point = self::point(system.family, number, found, label);
+                let mut point = self::point(system.family, number, found, label);
+                if let Some(which) = found.zero_of {
+                    point = point.at_zero_of(&self.curve.watch, which);
+                }
                 // A special point that the curve begins at may be met once more, where what is zero there is not quite.
                 let landmark = label.is_some().then(|| Landmark::of(&point));
                 if begins {
@@ -383,8 +392,9 @@ impl GeneralCurve<'_> {
         match self.kind {
             GeneralBifurcation::Equilibrium(kind) => equilibrium_curves(self, kind, seen),
             GeneralBifurcation::Orbit(test_function) => {
-                super::orbit_curves(self, test_function, seen)
+                super::orbit_curves(self, Some(test_function), seen)
             }
+            GeneralBifurcation::Held => super::orbit_curves(self, None, seen),
             GeneralBifurcation::Homoclinic => homoclinic_curves(self, seen),
         }
     }

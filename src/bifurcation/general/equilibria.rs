@@ -6,13 +6,14 @@ use super::splits::with_splits;
 use super::{
     GeneralBranch, GeneralEvent, GeneralObserver, GeneralPoint, GeneralSolution, SAME, Teller,
 };
-use crate::bifurcation::equilibria::generic::{FieldEquilibria, FoundEquilibrium, Onward};
+use crate::bifurcation::equilibria::generic::{FieldEquilibria, FoundEquilibrium, Onward, Watch};
 use crate::bifurcation::equilibria::generic_curve::{EquilibriumBifurcation, EquilibriumCurve};
 use crate::bifurcation::{Criticality, Label};
 use crate::continuation::{Settings, Stop};
 use crate::error::Result;
 use crate::field::Vector;
 use crate::number::Uncertain;
+use crate::orbit::Solution;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 use std::ops::ControlFlow::{self, Break, Continue};
@@ -326,7 +327,20 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
                 _ => told,
             }
         };
-        let followed = self.with_family(|family| family.follow(onward, &settings, &mut look));
+        let held = self.branch.held;
+        let system = self.branch.system;
+        let watch = Watch {
+            count: self.branch.watch.len(),
+            of: &|which, state, x| {
+                let equilibrium = Solution::Equilibrium {
+                    state,
+                    period: None,
+                };
+                system.family.user_function(which, equilibrium, [x, held])
+            },
+        };
+        let followed =
+            self.with_family(|family| family.follow_watching(onward, &settings, watch, &mut look));
         let followed = match followed {
             Ok(followed) => followed,
             // What was thought to be an equilibrium is none.
@@ -456,6 +470,12 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
             Some(Label::Hb) => EquilibriumBifurcation::Hopf,
             Some(Label::Uz | Label::Ep) if found.leaves.is_none() => {
                 return rough.placed(system.family, [0.0; 2]);
+            }
+            Some(Label::Uf) => {
+                let which = found.zero_of.unwrap_or_default();
+                let off = found.uncertainty.unwrap_or(f64::INFINITY);
+                let point = rough.at_zero_of(&self.branch.watch, which);
+                return point.placed(system.family, [off, 0.0]);
             }
             Some(Label::Bp | Label::Ep) => {
                 let off = found.uncertainty.unwrap_or(f64::INFINITY);

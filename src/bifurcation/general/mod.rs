@@ -16,7 +16,7 @@ pub use equilibria::equilibria;
 pub use splits::WithinClusters;
 
 use super::orbits::SpecialOrbit;
-use super::{Criticality, Label, less_accurate};
+use super::{Criticality, Label, less_accurate, zero_note};
 use crate::bifurcation::equilibria::generic_crossing::BranchCrossing;
 use crate::bifurcation::equilibria::generic_curve::EquilibriumBifurcation;
 use crate::equilibrium::{Symmetry, Verdict};
@@ -24,7 +24,7 @@ use crate::error::{Error, Result};
 use crate::field::Vector;
 use crate::number::Uncertain;
 use crate::orbit::{
-    ContinuationPoint, ParametrisedField, ShootingNodes, TestFunction, WithinCluster,
+    ContinuationPoint, ParametrisedField, ShootingNodes, Solution, TestFunction, WithinCluster,
 };
 use nalgebra::Complex;
 use std::cmp::Ordering;
@@ -91,6 +91,9 @@ pub struct GeneralBranch<'a> {
     pub held: f64,
     /// Values to land on.
     pub at: Vec<f64>,
+    /// The user's functions of its solutions whose zeros are special points, as `EXPRESSION` or `EXPRESSION = VALUE`: those of the families, in this
+    /// order.
+    pub watch: Vec<String>,
     /// An orbit at the beginning of the range, where one is known.
     pub orbit: Option<ContinuationPoint>,
     /// Where orbits begin if no Hopf point leads to any.
@@ -120,6 +123,8 @@ pub struct GeneralCurve<'a> {
     pub beyond: [(f64, f64); 2],
     /// Values to land on.
     pub at: [Vec<f64>; 2],
+    /// As of a branch.
+    pub watch: Vec<String>,
     /// An orbit with its coordinates, where one is known.
     pub orbit: Option<ContinuationPoint>,
     /// The coordinates of the system's own values, where it has such in the ranges: where homoclinic orbits are looked for first.
@@ -163,6 +168,8 @@ pub enum GeneralBifurcation {
     Equilibrium(EquilibriumBifurcation),
     /// Orbits.
     Orbit(TestFunction),
+    /// None: the curve is of the orbits at which the first of the user's functions that are watched vanishes.
+    Held,
     /// Homoclinic orbits, in all of their points.
     Homoclinic,
 }
@@ -229,6 +236,14 @@ pub struct GeneralPoint {
 }
 
 impl GeneralSolution {
+    /// The same as functions of it see it.
+    pub fn seen(&self, period: Option<f64>) -> Solution<'_> {
+        match self {
+            GeneralSolution::Equilibrium { state, .. } => Solution::Equilibrium { state, period },
+            GeneralSolution::Orbit { shooting, .. } => Solution::Orbit(shooting),
+        }
+    }
+
     /// Whether the last two of three variables, or the one that stands for both, are equal all along.
     pub fn symmetry(&self) -> Symmetry {
         match self {
@@ -322,6 +337,12 @@ impl GeneralPoint {
         if all.any(|(x, size)| x.uncertainty > tolerance * size) {
             self.note = Some(less_accurate(self.note));
         }
+        self
+    }
+
+    /// The same with which function is zero there.
+    pub(super) fn at_zero_of(mut self, watch: &[String], which: usize) -> Self {
+        self.note = watch.get(which).map(|text| zero_note(text));
         self
     }
 

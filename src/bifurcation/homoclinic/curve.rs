@@ -306,6 +306,7 @@ impl SolutionCurve for HomoclinicCurve<'_, '_> {
             WatchedFunction::Value(i, value) => {
                 (at.solved.connection.at[i] - value) / self.solver.frame.widths[i]
             }
+            WatchedFunction::UserFunction(_) => f64::NAN,
         }
     }
 

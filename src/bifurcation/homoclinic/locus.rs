@@ -232,7 +232,9 @@ impl HomoclinicCurves<'_, '_> {
                     seen(self.told(at, number, Some(label), Some((i, value))), true)?;
                     if ends { Break(()) } else { Continue(()) }
                 }
-                Met::Zero(WatchedFunction::Turn(_), _) => Continue(()),
+                Met::Zero(WatchedFunction::Turn(_) | WatchedFunction::UserFunction(_), _) => {
+                    Continue(())
+                }
             })?;
         if stopped != Stop::Observer {
             let end = self.non_central(&last, continuation.curve.solver, number);

@@ -49,8 +49,12 @@ impl OrbitBranch<'_, '_, '_> {
             true => (self.row(near, Some(label)), None),
             false => special_orbit(self.chart, (self.number, label), near, meets),
         };
-        if let WatchedFunction::Value(_, x) = watch {
-            point.at[FREE] = x;
+        match watch {
+            WatchedFunction::Value(_, x) => point.at[FREE] = x,
+            WatchedFunction::UserFunction(which) => {
+                point = point.at_zero_of(&self.set.branch.watch, which);
+            }
+            _ => {}
         }
         // At a pitchfork two branches cross, and a direction between them may make the parameter seem to turn. But no fold is found there.
         if label == Label::Sn && orbit.is_none() {
@@ -117,6 +121,7 @@ impl OrbitBranch<'_, '_, '_> {
                 Label::Uz
             }
             WatchedFunction::Value(..) => Label::Uz,
+            WatchedFunction::UserFunction(_) => Label::Uf,
             WatchedFunction::TestFunction(TestFunction::Doubling) => Label::Pd,
             WatchedFunction::TestFunction(TestFunction::Torus) if sum_of_pair(near).abs() < 2.0 => {
                 Label::Tr

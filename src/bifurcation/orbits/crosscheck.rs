@@ -6,7 +6,7 @@
 use super::loadings::with_system;
 use super::refine::SpecialOrbit;
 use crate::bifurcation::general::GeneralSystem;
-use crate::bifurcation::{Parameter, Special};
+use crate::bifurcation::{Parameter, Special, UserFunction};
 use crate::error::{Error, Result};
 use crate::field::Vector;
 use crate::integrate::{Choice, MAX_STEPS, Tolerances};
@@ -22,12 +22,12 @@ const TOLERANCE: f64 = 1e-12;
 
 /// Relative differences in V_H, K and the period between a special point of orbits and the same one by another method. That
 /// begins from the first one's nodes, cut to a few digits, and shares nothing else with it. `None` for points that are no
-/// orbit's, and for tops, which have no condition of their own.
+/// orbit's, and for tops, which have no condition of their own. The functions are those of the request.
 ///
 /// # Errors
 /// As of [`GeneralSystem::crosscheck`].
 pub fn crosscheck(
-    slab: &InterfaceSystem,
+    (slab, watch): (&InterfaceSystem, &[UserFunction]),
     special: &Special,
     method: Choice,
 ) -> Result<Option<[f64; 3]>> {
@@ -36,7 +36,7 @@ pub fn crosscheck(
     };
     let period = special.period.map_or(f64::NAN, |period| period.value);
     let first = [special.driving.value, special.stiffness.value, period];
-    let second = with_system(slab, Parameter::Driving, |system| {
+    let second = with_system((slab, watch), Parameter::Driving, |system| {
         system.crosscheck(orbit, method)
     })?;
     Ok(Some([0, 1, 2].map(|i| second[i] / first[i] - 1.0)))

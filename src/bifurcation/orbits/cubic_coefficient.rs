@@ -222,7 +222,7 @@ impl CurvesOfKind<'_, '_> {
 impl HalfCurve<'_, '_, '_> {
     /// Which way the bifurcation goes at an orbit of the curve; folds have none.
     pub fn way(&self, site: &ContinuationPoint) -> Option<Way> {
-        way(self.chart, self.kind.test_function, site)
+        way(self.chart, self.kind.test_function?, site)
     }
 
     /// The criticality at every point, where that is asked for.
@@ -238,12 +238,13 @@ impl HalfCurve<'_, '_, '_> {
     pub fn changes(&mut self, here: &Regular) -> ControlFlow<(), Option<Way>> {
         let way = self.wanted_way(&here.site);
         let now = way.and_then(|(coefficient, way)| Decided::new(here, coefficient, way));
-        if let Some(now) = now
+        if let Some(test_function) = self.kind.test_function
+            && let Some(now) = now
             && let Some(before) = self.decided.replace(now.clone())
         {
             let moved = |i: usize| (now.site.at[i] - before.site.at[i]).abs();
             let held = usize::from(moved(1) >= moved(0));
-            let zero = with_curve(self.chart, self.kind.test_function, held, |curve| {
+            let zero = with_curve(self.chart, test_function, held, |curve| {
                 before.change(&now, curve)
             });
             if let Some(zero) = zero {

@@ -1,4 +1,4 @@
-//! Degenerate Hopf points, to which curves of folds of orbits shrink.
+//! Hopf points to which curves of orbits shrink: degenerate ones, of folds; and of orbits at which a function vanishes those at which it does too.
 //!
 //! Beside one the fold's condition is a small power of the orbit's size, and soon rounding.
 
@@ -14,7 +14,7 @@ use crate::orbit::{ContinuationPoint, ShootingNodes, TestFunction};
 use std::ops::ControlFlow::Continue;
 use std::sync::OnceLock;
 
-/// A curve of folds of orbits this much smaller than the largest shrinks to an equilibrium.
+/// A curve of orbits this much smaller than the largest shrinks to an equilibrium.
 const SHRUNK: f64 = 0.05;
 
 /// The points in the ranges of a curve, as orbits that have shrunk to a point; computed at first use.
@@ -22,7 +22,7 @@ const SHRUNK: f64 = 0.05;
 pub(super) struct DegenerateHopfPoints(OnceLock<Vec<GeneralPoint>>);
 
 impl CurvesOfKind<'_, '_> {
-    /// The degenerate Hopf point to which a curve of folds shrinks, by an orbit among all states and how far each variable goes on the largest one.
+    /// The Hopf point to which a curve shrinks, by an orbit among all states and how far each variable goes on the largest one.
     pub fn shrinks_to(
         &self,
         number: usize,
@@ -32,6 +32,8 @@ impl CurvesOfKind<'_, '_> {
         /// Tolerances in the ranges, in the period, and in the size of the orbit.
         const NEAR: f64 = 0.05;
         const BESIDE: f64 = 2.0;
+        /// What a variable that hardly moves may be off, as a part of its size along the largest orbit.
+        const STILL: f64 = 1e-3;
         let ContinuationPoint { shooting, at } = orbit;
         let extents = shooting.extents();
         let is_small = || {
@@ -40,7 +42,12 @@ impl CurvesOfKind<'_, '_> {
                 .zip(largest)
                 .all(|(x, most)| *x < SHRUNK * most)
         };
-        if self.test_function != TestFunction::Fold || !is_small() {
+        let label = match self.test_function {
+            Some(TestFunction::Fold) => Label::Gh,
+            None => Label::Uf,
+            Some(_) => return None,
+        };
+        if !is_small() {
             return None;
         }
         let ranges = self.curve.ranges;
@@ -48,7 +55,8 @@ impl CurvesOfKind<'_, '_> {
             let GeneralSolution::Orbit { shooting: rest, .. } = &point.solution else {
                 return false;
             };
-            let off = |x: &Vector| (x - &rest.nodes[0]).component_div(&extents).amax();
+            let size = extents.sup(&(largest * STILL));
+            let off = |x: &Vector| (x - &rest.nodes[0]).component_div(&size).amax();
             let part = |i: usize| (point.at[i] - at[i]) / (ranges[i].1 - ranges[i].0);
             let of_period = (shooting.period() / rest.period()).ln();
             shooting.nodes.iter().all(|x| off(x) < BESIDE)
@@ -56,20 +64,27 @@ impl CurvesOfKind<'_, '_> {
                     .iter()
                     .all(|off| off.abs() < NEAR)
         };
-        let all = self.degenerate.0.get_or_init(|| found(self.curve));
+        let all = self.degenerate.0.get_or_init(|| found(self.curve, label));
+        let point = all.iter().find(near)?.clone();
         Some(GeneralPoint {
             number,
             symmetry: self.chart.symmetry(),
-            ..all.iter().find(near)?.clone()
+            label: point.label.map(|label| match label {
+                Label::Uf => Label::Hb,
+                other => other,
+            }),
+            note: None,
+            ..point
         })
     }
 }
 
-fn found(curve: &GeneralCurve<'_>) -> Vec<GeneralPoint> {
+/// The points of curves of Hopf points that have this label.
+fn found(curve: &GeneralCurve<'_>, label: Label) -> Vec<GeneralPoint> {
     let mut found = Vec::new();
     let mut look = |event| {
         if let GeneralEvent::Row(point) = event
-            && point.label == Some(Label::Gh)
+            && point.label == Some(label)
             && let GeneralSolution::Equilibrium { state, .. } = &point.solution
             && let Some(period) = point.period
         {
@@ -88,6 +103,10 @@ fn found(curve: &GeneralCurve<'_>) -> Vec<GeneralPoint> {
         Continue(())
     };
     let curve = GeneralCurve {
+        watch: match label {
+            Label::Uf => curve.watch.iter().take(1).cloned().collect(),
+            _ => Vec::new(),
+        },
         following: GeneralFollowing {
             skip: Vec::new(),
             ..curve.following.clone()

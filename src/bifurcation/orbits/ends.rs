@@ -4,7 +4,7 @@ use super::chart::Chart;
 use crate::bifurcation::general::{GeneralEvent, GeneralSystem, SAME};
 use crate::error::Result;
 use crate::field::Vector;
-use crate::orbit::{ContinuationPoint, ranges};
+use crate::orbit::{ContinuationPoint, Digits, ranges};
 
 /// An orbit at an end of the range, the same for its mirror images.
 pub(super) struct End {
@@ -25,7 +25,11 @@ impl End {
         site: &ContinuationPoint,
     ) -> Result<Self> {
         let site = chart.in_whole(site);
-        let ranges = ranges(&chart.whole_family().field(site.at), &site.shooting)?;
+        let ranges = ranges(
+            &chart.whole_family().field(site.at),
+            &site.shooting,
+            Digits::Six,
+        )?;
         let (least, greatest): (Vec<f64>, Vec<f64>) = ranges.into_iter().unzip();
         let representative = |numbers| system.representative(&Vector::from_vec(numbers));
         Ok(End {

@@ -4,6 +4,7 @@ use super::branches::{LONGEST, ROUGH, new_corrector};
 use super::chart::Chart;
 use super::cubic_coefficient::Decided;
 use super::degenerate_hopf::DegenerateHopfPoints;
+use super::multipliers_together::is_real;
 use super::orbit_point::{orbit_point, pass, special_orbit, sum_of_pair};
 use super::top::top;
 use crate::bifurcation::Label;
@@ -33,13 +34,17 @@ const RESONANCES: [(Label, f64); 4] = [
     (Label::R4, 0.0),
 ];
 
+/// The number of the function that vanishes along a curve of orbits that do not bifurcate.
+const HELD: usize = 0;
+
 /// A coordinate along which K may be largest.
 const STIFFNESS: &str = "stiffness";
 
 /// All that the curves of one bifurcation share.
 pub(super) struct CurvesOfKind<'c, 'a> {
     pub curve: &'c GeneralCurve<'a>,
-    pub test_function: TestFunction,
+    /// What bifurcates; where nothing does, the first of the user's functions vanishes.
+    pub test_function: Option<TestFunction>,
     /// The variables that orbits are in at first.
     pub chart: Chart<'a>,
     /// The coordinate at whose values bifurcations are looked for, and these values.
@@ -51,7 +56,7 @@ pub(super) struct CurvesOfKind<'c, 'a> {
 impl<'c, 'a> CurvesOfKind<'c, 'a> {
     pub fn new(
         curve: &'c GeneralCurve<'a>,
-        test_function: TestFunction,
+        test_function: Option<TestFunction>,
         chart: Chart<'a>,
         held: usize,
         scan: &[f64],
@@ -68,7 +73,16 @@ impl<'c, 'a> CurvesOfKind<'c, 'a> {
 
     pub fn settings(&self) -> PalcSettings {
         let longest = LONGEST * self.curve.following.step;
-        PalcSettings::locus(self.test_function, longest)
+        match self.test_function {
+            Some(test_function) => PalcSettings::locus(test_function, longest),
+            None => PalcSettings::held(HELD, longest),
+        }
+    }
+
+    /// What vanishes along a curve.
+    fn condition(&self) -> WatchedFunction {
+        let bifurcation = self.test_function.map(WatchedFunction::TestFunction);
+        bifurcation.unwrap_or(WatchedFunction::UserFunction(HELD))
     }
 
     fn watches(&self) -> Vec<WatchedFunction> {
@@ -79,12 +93,24 @@ impl<'c, 'a> CurvesOfKind<'c, 'a> {
             .names
             .iter()
             .position(|name| *name == STIFFNESS);
-        watches.extend(stiffness.map(WatchedFunction::Turn));
+        let bifurcates = self.test_function.is_some();
+        watches.extend(stiffness.filter(|_| bifurcates).map(WatchedFunction::Turn));
         match self.test_function {
-            TestFunction::Torus => watches.extend(
+            None => {
+                // Each multiplier that comes to the unit circle.
+                let along_branches = self.chart.watches().into_iter();
+                let fold = WatchedFunction::TestFunction(TestFunction::Fold);
+                watches.extend(along_branches.map(|watch| match watch {
+                    WatchedFunction::Turn(_) => fold,
+                    other => other,
+                }));
+            }
+            Some(TestFunction::Torus) => watches.extend(
                 RESONANCES.map(|(_, sum)| WatchedFunction::TestFunction(TestFunction::Trace(sum))),
             ),
-            TestFunction::Doubling | TestFunction::Fold if self.chart.family().dimension() > 2 => {
+            Some(TestFunction::Doubling | TestFunction::Fold)
+                if self.chart.family().dimension() > 2 =>
+            {
                 watches.push(WatchedFunction::TestFunction(TestFunction::Torus));
             }
             _ => {}
@@ -93,6 +119,8 @@ impl<'c, 'a> CurvesOfKind<'c, 'a> {
             let values = [from, to].into_iter().chain(curve.at[i].iter().copied());
             watches.extend(values.map(|x| WatchedFunction::Value(i, x)));
         }
+        let first = if bifurcates { 0 } else { HELD + 1 };
+        watches.extend((first..curve.watch.len()).map(WatchedFunction::UserFunction));
         for &x in &self.scan {
             let watch = WatchedFunction::Value(self.held, x);
             if !watches.contains(&watch) {
@@ -268,6 +296,14 @@ impl<'s, 'c, 'a> HalfCurve<'s, 'c, 'a> {
                 }
             }
             WatchedFunction::Turn(i) => return self.turns(near, i),
+            WatchedFunction::UserFunction(_) => (Label::Uf, false),
+            WatchedFunction::TestFunction(one) if test_function.is_none() => match one {
+                TestFunction::Doubling => (Label::Pd, false),
+                TestFunction::Torus if sum.abs() < 2.0 && !is_real(near) => (Label::Tr, false),
+                TestFunction::Transverse => (Label::Pf, false),
+                TestFunction::Fold => (Label::Sn, false),
+                _ => return Continue(()),
+            },
             WatchedFunction::TestFunction(TestFunction::Trace(x)) => {
                 match RESONANCES.iter().find(|(_, sum)| *sum == x) {
                     Some((label, _)) => (*label, x.abs() == 2.0),
@@ -276,8 +312,8 @@ impl<'s, 'c, 'a> HalfCurve<'s, 'c, 'a> {
             }
             // Both multipliers are -1, or 1; elsewhere the pair whose product is 1 has nothing to do with the bifurcation.
             WatchedFunction::TestFunction(_) => match test_function {
-                TestFunction::Doubling if sum < -REAL => (Label::R2, false),
-                TestFunction::Fold if sum > REAL => (Label::R1, false),
+                Some(TestFunction::Doubling) if sum < -REAL => (Label::R2, false),
+                Some(TestFunction::Fold) if sum > REAL => (Label::R1, false),
                 _ => return Continue(()),
             },
         };
@@ -288,14 +324,15 @@ impl<'s, 'c, 'a> HalfCurve<'s, 'c, 'a> {
 
     /// A point at which something else is zero too.
     fn special_point(&self, label: Label, watch: WatchedFunction, near: &Regular) -> GeneralPoint {
-        let meets = [
-            WatchedFunction::TestFunction(self.kind.test_function),
-            watch,
-        ];
+        let meets = [self.kind.condition(), watch];
         let (mut point, orbit) =
             special_orbit(self.chart, (self.number, label), near, (&[0, 1], &meets));
-        if let WatchedFunction::Value(i, x) = watch {
-            point.at[i] = x;
+        match watch {
+            WatchedFunction::Value(i, x) => point.at[i] = x,
+            WatchedFunction::UserFunction(which) => {
+                point = point.at_zero_of(&self.kind.curve.watch, which);
+            }
+            _ => {}
         }
         let orbit = orbit.as_ref().unwrap_or(near);
         let way = match self.kind.curve.criticality {
@@ -307,7 +344,8 @@ impl<'s, 'c, 'a> HalfCurve<'s, 'c, 'a> {
 
     /// K is stationary along the curve here: its largest value, if it is that.
     fn turns(&mut self, at: &Regular, i: usize) -> ControlFlow<()> {
-        let top = top(self.chart.family(), &at.site, self.kind.test_function, i);
+        let test_function = self.kind.test_function;
+        let top = test_function.and_then(|one| top(self.chart.family(), &at.site, one, i));
         let Some(top) = top.filter(|top| top.largest) else {
             return Continue(());
         };
@@ -322,9 +360,15 @@ impl<'s, 'c, 'a> HalfCurve<'s, 'c, 'a> {
     /// A curve of asymmetric orbits has come to symmetric ones: to the degenerate pitchfork at this value of the coordinate.
     fn merges(&mut self, last: &Regular) -> ControlFlow<()> {
         let (chart, site) = self.chart.symmetric(&last.site);
-        let zero = self.kind.degenerate_pitchfork(chart, &site);
+        let bifurcates = self.kind.test_function.is_some();
+        let zero = || self.kind.degenerate_pitchfork(chart, &site);
+        let zero = bifurcates.then(zero).flatten();
         let point = match zero {
             Some(zero) => self.zero_of_coefficient(chart, zero),
+            None if self.kind.test_function.is_none() => GeneralPoint {
+                note: Some("the curve ends on a pitchfork of symmetric orbits".into()),
+                ..self.row(last, Some(Label::Ep))
+            },
             None => GeneralPoint {
                 note: Some("the curve ends on the curve of pitchforks of orbits".into()),
                 ..self.row(last, Some(Label::Cp))
@@ -345,7 +389,7 @@ impl<'s, 'c, 'a> HalfCurve<'s, 'c, 'a> {
 
     /// With the angle of the pair on the unit circle.
     pub fn angled(&self, mut point: GeneralPoint, orbit: &Regular) -> GeneralPoint {
-        if self.kind.test_function == TestFunction::Torus {
+        if self.kind.test_function == Some(TestFunction::Torus) {
             let sum = sum_of_pair(orbit);
             point.angle_over_pi = Some((0.5 * sum).clamp(-1.0, 1.0).acos() / PI);
         }

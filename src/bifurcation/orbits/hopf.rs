@@ -17,6 +17,11 @@ pub type HopfBeginning = (SmallOrbits, GeneralPoint);
 
 /// The Hopf points on equilibria in the range or, where there are none and no orbit is given, beyond it.
 pub(super) fn hopfs_on_equilibria(branch: &GeneralBranch<'_>) -> Result<Vec<HopfBeginning>> {
+    // Those are functions of orbits.
+    let branch = &GeneralBranch {
+        watch: Vec::new(),
+        ..branch.clone()
+    };
     let hopfs = hopf_points(branch)?;
     if !hopfs.is_empty() || branch.orbit.is_some() {
         return Ok(hopfs);

@@ -8,15 +8,16 @@ use crate::bifurcation::general::{
     GeneralSystem, in_order,
 };
 use crate::bifurcation::{
-    BranchRequest, BranchRow, Event, EventObserver, Label, Parameter, Special, equilibria,
+    BranchRequest, BranchRow, Event, EventObserver, Label, Parameter, Special, UserFunction,
+    equilibria,
 };
 use crate::equilibrium::{Equilibrium, Solver, Symmetry, steady_states};
 use crate::error::{Error, Result};
-use crate::field::Vector;
+use crate::field::{State, Vector};
 use crate::number::{Uncertain, eigenvalues};
 use crate::orbit::{
-    HopfPoint, InterfaceSystem, OverDifferenceChart, OverLoadings, ParametrisedField, Profile,
-    ShootingNodes, hopf_points, profile,
+    ContinuationPoint, Digits, HopfPoint, InterfaceSystem, OverDifferenceChart, OverLoadings,
+    ParametrisedField, Profile, ShootingNodes, Solution, WithFunctions, hopf_points, profile,
 };
 use std::ops::ControlFlow::Break;
 
@@ -40,13 +41,14 @@ pub fn branch(request: &BranchRequest, seen: EventObserver<'_>) -> Result<()> {
     );
     let hopfs = |symmetry| hopf_beginnings(slab, along, symmetry);
     let mut failed = None;
-    with_system(slab, along, |system| {
+    with_system((slab, &request.watch), along, |system| {
         let branch = GeneralBranch {
             system: *system,
             range,
             beyond: (range.0 - BEYOND, range.1 + BEYOND),
             held: loading[1].ln(),
             at: request.at.iter().map(|x| x.ln()).collect(),
+            watch: request.watch.iter().map(|one| one.text.clone()).collect(),
             orbit: None,
             found: None,
             hopfs: Some(&hopfs),
@@ -72,7 +74,7 @@ pub fn branch(request: &BranchRequest, seen: EventObserver<'_>) -> Result<()> {
 
 /// Does something with a slab over the logarithms of V_H and K, of which the one that varies is the first.
 pub(super) fn with_system<R>(
-    slab: &InterfaceSystem,
+    (slab, watch): (&InterfaceSystem, &[UserFunction]),
     along: Parameter,
     then: impl FnOnce(&GeneralSystem<'_>) -> R,
 ) -> R {
@@ -95,6 +97,25 @@ pub(super) fn with_system<R>(
             .map(|one| state(slab, one))
             .collect())
     };
+    let functions =
+        |which: usize, solution: Solution<'_>, [log_driving, log_stiffness]: [f64; 2]| {
+            value_of(
+                &watch[which],
+                &whole.slab([log_driving, log_stiffness]),
+                solution,
+            )
+        };
+    let of_difference = |which: usize, solution: Solution<'_>, at: [f64; 2]| match solution {
+        Solution::Orbit(shooting) => {
+            let shooting = shooting.clone();
+            let site = OverDifferenceChart::from_chart(&ContinuationPoint { shooting, at });
+            functions(which, Solution::Orbit(&site.shooting), at)
+        }
+        Solution::Equilibrium { .. } => f64::NAN,
+    };
+    let with = |family, functions| WithFunctions { family, functions };
+    let (whole, alike) = (with(&whole, &functions), with(&alike, &functions));
+    let difference = with(&difference, &of_difference);
     let exchanged = (Exchanged(&whole), Exchanged(&alike), Exchanged(&difference));
     let mut system = GeneralSystem {
         family: &whole,
@@ -111,6 +132,27 @@ pub(super) fn with_system<R>(
         system.difference = both.then_some(&exchanged.2);
     }
     then(&system)
+}
+
+/// The value of a function of a solution at V_H and K; NaN where the flow along an orbit fails.
+fn value_of(function: &UserFunction, here: &InterfaceSystem, solution: Solution<'_>) -> f64 {
+    let (profile, period) = match solution {
+        Solution::Orbit(shooting) => match profile(here, shooting, Digits::All) {
+            Ok(profile) => (profile, Some(shooting.period())),
+            Err(_) => return f64::NAN,
+        },
+        Solution::Equilibrium { state, period } => {
+            let y = State::<3>::new(state[0], state[1], state[state.len() - 1]);
+            let at_rest = Profile {
+                mean_stress: y[0],
+                stress_range: (y[0], y[0]),
+                state: [y[1].exp(), y[2].exp()],
+                slip_rate: here.whole().slip_rates(&y),
+            };
+            (at_rest, period)
+        }
+    };
+    (function.value)(here.loading, &profile, period)
 }
 
 /// All states of a slab: of a single interface those in which all of them move alike.
@@ -218,7 +260,7 @@ impl BranchRequest {
             stress_range,
             state,
             slip_rate,
-        } = profile(&here, shooting)?;
+        } = profile(&here, shooting, Digits::Six)?;
         let [driving, stiffness] = self.given(point);
         Ok(BranchRow {
             branch: point.number,

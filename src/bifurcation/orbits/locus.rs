@@ -217,7 +217,7 @@ impl LocusRequest {
         let logs = |(from, to): (f64, f64)| (from.ln(), to.ln());
         let ranges = [logs(self.driving), logs(self.stiffness)];
         let all = |values: &[f64]| values.iter().map(|x| x.ln()).collect();
-        with_system(&self.slab, Parameter::Driving, |system| {
+        with_system((&self.slab, &self.watch), Parameter::Driving, |system| {
             let test_function = of_kind(self.kind);
             let curve = GeneralCurve {
                 system: *system,
@@ -225,6 +225,7 @@ impl LocusRequest {
                 ranges,
                 beyond: ranges,
                 at: [all(&self.at_driving), all(&self.at_stiffness)],
+                watch: self.watch.iter().map(|one| one.text.clone()).collect(),
                 orbit: None,
                 own: None,
                 seeds: Some(seeds),
@@ -239,7 +240,7 @@ impl LocusRequest {
                     max_points: self.max_points,
                 },
             };
-            orbit_curves(&curve, test_function, &mut |event| {
+            orbit_curves(&curve, Some(test_function), &mut |event| {
                 seen(match event {
                     GeneralEvent::Row(point) => Event::Locus(self.row(&point)),
                     GeneralEvent::Special(point) => {

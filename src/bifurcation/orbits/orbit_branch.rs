@@ -100,6 +100,7 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
             .chain(branch.at.iter().copied())
             .chain(begin);
         watches.extend(values.map(|x| WatchedFunction::Value(FREE, x)));
+        watches.extend((0..branch.watch.len()).map(WatchedFunction::UserFunction));
         watches
     }
 

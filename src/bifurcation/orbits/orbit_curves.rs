@@ -1,5 +1,7 @@
 //! Curves of bifurcations of periodic orbits in the plane of two parameters: folds, period doublings, torus bifurcations and pitchforks.
 //!
+//! Curves of orbits that have in common a value of a function of the user's, as the period, are followed in the same way.
+//!
 //! They begin at the bifurcations on branches along one parameter at a few values of the other, and are followed both ways with both free: past their
 //! tops, through resonances, to where the bifurcation ceases to be one.
 
@@ -38,7 +40,7 @@ pub trait OrbitSeeds: Sync {
     fn beside(&self, symmetry: Symmetry, work: &mut dyn FnMut());
 }
 
-/// Follows all curves of this bifurcation of orbits through the ranges and hands on what is found: of two equal parts first those of symmetric orbits.
+/// Follows all curves of this bifurcation of orbits, or of those at which the first of the user's functions vanishes, through the ranges and hands on what is found: of two equal parts first those of symmetric orbits.
 ///
 /// Where there are several cores both halves of a curve are followed side by side; from a thread of a rayon pool all is done on that thread. What is
 /// found, and its order, do not depend on this.
@@ -48,7 +50,7 @@ pub trait OrbitSeeds: Sync {
 /// ends early is none: it is told as `MX`.
 pub fn orbit_curves(
     curve: &GeneralCurve<'_>,
-    test_function: TestFunction,
+    test_function: Option<TestFunction>,
     seen: GeneralObserver<'_>,
 ) -> Result<()> {
     let mut teller = Teller::new(seen, &curve.following);
@@ -59,21 +61,23 @@ pub fn orbit_curves(
         known: Vec::new(),
     };
     for chart in charts(curve, test_function) {
-        test_function.checked(chart.family().dimension())?;
+        if let Some(test_function) = test_function {
+            test_function.checked(chart.family().dimension())?;
+        }
         curves.of_chart(chart, &mut teller)?;
     }
     teller.end()
 }
 
 /// The variables of the orbits that have a bifurcation.
-fn charts<'a>(curve: &GeneralCurve<'a>, test_function: TestFunction) -> Vec<Chart<'a>> {
+fn charts<'a>(curve: &GeneralCurve<'a>, test_function: Option<TestFunction>) -> Vec<Chart<'a>> {
     let system = &curve.system;
     if system.alike.is_none() {
         return vec![Chart::whole(system)];
     }
     let all: &[Symmetry] = match test_function {
-        TestFunction::Transverse => &[Symmetry::Symmetric],
-        TestFunction::Fold => &[Symmetry::Symmetric, Symmetry::Asymmetric],
+        Some(TestFunction::Transverse) => &[Symmetry::Symmetric],
+        Some(TestFunction::Fold) | None => &[Symmetry::Symmetric, Symmetry::Asymmetric],
         _ => &[Symmetry::Asymmetric],
     };
     let wanted = |one: &&Symmetry| curve.symmetry.is_none_or(|only| only == **one);
@@ -87,7 +91,7 @@ type Seed = (Symmetry, ContinuationPoint);
 /// All curves of a bifurcation, and the bifurcations on branches.
 struct OrbitCurves<'c, 'a> {
     curve: &'c GeneralCurve<'a>,
-    test_function: TestFunction,
+    test_function: Option<TestFunction>,
     count: usize,
     /// The bifurcations along one of the coordinates at a value of the other one.
     known: Vec<((usize, f64), Vec<Seed>)>,
@@ -145,9 +149,9 @@ impl<'a> OrbitCurves<'_, 'a> {
     /// The bifurcations at a value of the coordinate that is held, in the variables of the curves.
     fn seeds(&mut self, kind: &CurvesOfKind<'_, 'a>, held: f64) -> Result<Vec<ContinuationPoint>> {
         let symmetry = kind.chart.symmetry();
-        if let Some(seeds) = self.curve.seeds {
+        if let (Some(seeds), Some(test_function)) = (self.curve.seeds, self.test_function) {
             let symmetry = symmetry.unwrap_or(Symmetry::Asymmetric);
-            return seeds.at(held, symmetry, self.test_function);
+            return seeds.at(held, symmetry, test_function);
         }
         let place = (1 - kind.held, held);
         if !self.known.iter().any(|(there, _)| *there == place) {
@@ -163,10 +167,11 @@ impl<'a> OrbitCurves<'_, 'a> {
     /// The bifurcations along a coordinate at a value of the other one.
     fn look_along(&self, (along, held): (usize, f64)) -> Result<Vec<Seed>> {
         let wanted = match self.test_function {
-            TestFunction::Fold => Label::Sn,
-            TestFunction::Doubling => Label::Pd,
-            TestFunction::Transverse => Label::Pf,
-            _ => Label::Tr,
+            Some(TestFunction::Fold) => Label::Sn,
+            Some(TestFunction::Doubling) => Label::Pd,
+            Some(TestFunction::Transverse) => Label::Pf,
+            Some(_) => Label::Tr,
+            None => Label::Uf,
         };
         let mut found = Vec::new();
         looked_along(self.curve, along, held, |branch| {
@@ -177,6 +182,10 @@ impl<'a> OrbitCurves<'_, 'a> {
                     at: in_order(along, orbit.at),
                     ..orbit
                 }),
+                watch: match self.test_function {
+                    None => self.curve.watch.iter().take(1).cloned().collect(),
+                    Some(_) => Vec::new(),
+                },
                 ..branch.clone()
             };
             orbits(&branch, &mut |event| {

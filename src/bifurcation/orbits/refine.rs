@@ -38,7 +38,7 @@ impl SpecialOrbit {
         let meets = |watch: WatchedFunction| match watch {
             WatchedFunction::Turn(i) => WatchedFunction::Turn(1 - i),
             WatchedFunction::Value(i, value) => WatchedFunction::Value(1 - i, value),
-            WatchedFunction::TestFunction(_) => watch,
+            WatchedFunction::TestFunction(_) | WatchedFunction::UserFunction(_) => watch,
         };
         SpecialOrbit {
             at: in_order(1, self.at),

@@ -142,7 +142,7 @@ impl Scan {
             .get_or_init(|| EquilibriaAlong::new(&slab, self.symmetry, Parameter::Driving));
         let equilibria = equilibria.as_ref().map_err(Error::clone)?;
         let hopfs = equilibria.hopf_points(&slab)?;
-        with_system(&slab, Parameter::Driving, |system| {
+        with_system((&slab, &[]), Parameter::Driving, |system| {
             let chart = Chart::of(system, self.symmetry);
             for i in 0..hopfs.len() {
                 if !reached.contains(&i) {
