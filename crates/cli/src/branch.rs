@@ -32,6 +32,7 @@ pub fn run(options: &BranchOptions, call: &Call) -> Result<Ending> {
         nothing: "no branch of orbits enters the range: none begins at a Hopf point along the parameter; `orbit` at a value in the range searches for others",
         system: &plan.system,
         slab: &plan.request.slab,
+        watch: &plan.request.watch,
         second: plan.following.second,
         numerics: &plan.numerics,
         explain: &|| plan.explain(),

@@ -38,6 +38,7 @@ pub fn run(options: &LocusOptions, call: &Call) -> Result<Ending> {
         nothing: &nothing,
         system: &plan.system,
         slab: &plan.request.slab,
+        watch: &plan.request.watch,
         second: plan.following.second,
         numerics: &plan.numerics,
         explain: &|| plan.explain(),

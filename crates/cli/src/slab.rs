@@ -7,7 +7,7 @@ use super::{Ending, special};
 use serde_json::Value;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
-use twinslip::bifurcation::{EventObserver, Special, orbits};
+use twinslip::bifurcation::{EventObserver, Special, UserFunction, orbits};
 use twinslip::error::Result;
 use twinslip::integrate::Choice;
 use twinslip::orbit::InterfaceSystem;
@@ -25,6 +25,8 @@ pub struct SlabCurves<'a> {
     pub system: &'a System,
     /// The same for the crosscheck of special points.
     pub slab: &'a InterfaceSystem,
+    /// The functions whose zeros are special points.
+    pub watch: &'a [UserFunction],
     /// The method of that crosscheck, where one is asked for.
     pub second: Option<Choice>,
     /// What was asked for.
@@ -50,7 +52,8 @@ impl SlabCurves<'_> {
         let units = self.system.units();
         let again = |one: &Special| {
             let second = self.second;
-            let checked = second.map(|method| orbits::crosscheck(self.slab, one, method));
+            let checked =
+                second.map(|method| orbits::crosscheck((self.slab, self.watch), one, method));
             Ok(checked.transpose()?.flatten().map(Vec::from))
         };
         let task = Task {

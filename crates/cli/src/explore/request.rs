@@ -53,7 +53,7 @@ const TEXTS: [&str; 27] = [
     "stiffness-range",
 ];
 /// More of them.
-const MORE_TEXTS: [&str; 3] = ["surface", "symmetry", "time-unit"];
+const MORE_TEXTS: [&str; 5] = ["hold", "surface", "symmetry", "time-unit", "watch"];
 /// Options of files that are switches here: what they name goes into the answer.
 const INTO_THE_ANSWER: [&str; 3] = ["events", "participation", "plot"];
 /// Options of files whose content may be given.

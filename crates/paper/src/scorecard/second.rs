@@ -50,7 +50,7 @@ pub fn orbit_at(
 pub fn again(pieces: &Pieces<'_>, special: &Special) -> Result<[Uncertain; 2]> {
     let (driving, stiffness) = (special.driving, special.stiffness);
     let slab = slab(pieces, driving.value, stiffness.value)?;
-    let parts = crosscheck(&slab, special, second_method()?)?;
+    let parts = crosscheck((&slab, &[]), special, second_method()?)?;
     let [in_driving, in_stiffness, _] =
         parts.ok_or_else(|| missing("a special point without its orbit"))?;
     let moved = |first: Uncertain, part: f64| {

@@ -2,6 +2,7 @@
 
 use super::continuation::BranchOptions;
 use super::following::{self, Following, landings, range};
+use super::general::{RowKind, user_functions};
 use super::system::System;
 use super::units::{Quantity, Units};
 use serde_json::{Value, json};
@@ -151,7 +152,13 @@ impl BranchPlan {
         let following = Following::new(&options.continuation, of == BranchKind::Orbits)?;
         let out = |x| units.outward(along.quantity, x);
         let at = landings("at", options.at.as_deref(), (along.quantity, units), ends)?;
-        let numerics = json!({
+        let kind = RowKind {
+            orbits: of == BranchKind::Orbits,
+            curve: false,
+            homoclinic: false,
+        };
+        let watch = user_functions(&options.watch, &system, (kind, &[along.name]))?;
+        let mut numerics = json!({
             "of": of.name(),
             "along": along.name,
             "from": out(ends.0),
@@ -163,7 +170,11 @@ impl BranchPlan {
             "doublings": options.doublings,
             "crosscheck": following.second.map(|second| second.name()),
         });
+        if !options.watch.is_empty() {
+            numerics["watch"] = json!(options.watch);
+        }
         let request = BranchRequest {
+            watch,
             slab: InterfaceSystem {
                 law: system.law,
                 interfaces: system.interfaces,
@@ -207,7 +218,7 @@ impl BranchPlan {
             self.along.name,
             out(from),
             out(to),
-            following::explain(&self.following, &self.request.at)
+            following::explain(&self.following, &self.request.at, &self.request.watch)
         )
     }
 

@@ -132,6 +132,16 @@ pub struct BranchOptions {
         help_heading = "Branch"
     )]
     pub at: Option<String>,
+    /// Label as UF every zero of EXPRESSION, or where EXPRESSION = VALUE: of the parameters and of what a row shows, as the states of an
+    /// equilibrium, or period and x_max - x_min of an orbit; repeatable
+    #[arg(
+        long,
+        value_name = "EXPRESSION",
+        value_delimiter = ';',
+        allow_hyphen_values = true,
+        help_heading = "Branch"
+    )]
+    pub watch: Vec<String>,
     /// Number of period doublings to follow: the branches of orbits with doubled period are computed too
     #[arg(long, value_name = "N", value_parser = count, default_value = "0", help_heading = "Branch")]
     pub doublings: usize,
@@ -247,13 +257,17 @@ impl LocusOptions {
         let names = plane(self.plane.as_deref().unwrap_or("driving,stiffness"))?;
         let system = System::new(&self.reference()?)?;
         let loading = names.contains(&"driving") && names.contains(&"stiffness");
-        let homoclinic = self.of.as_deref() == Some("homoclinic");
-        if system.unequal.is_none() && loading && !homoclinic {
+        let of_orbits = CurveChoice::named(self.of.as_deref())?.of_orbits();
+        // The closed forms of curves of equilibria tell of no other functions than their own.
+        let by_closed_forms = self.hold.is_none()
+            && self.of.as_deref() != Some("homoclinic")
+            && (self.watch.is_empty() || of_orbits);
+        if system.unequal.is_none() && loading && by_closed_forms {
             return Ok(None);
         }
         let search = &self.search;
         let subject = SlabSubject::new(system, &names)?;
-        if !CurveChoice::named(self.of.as_deref())?.of_orbits() {
+        if !of_orbits {
             search.unused()?;
             return Ok(Some(subject));
         }
@@ -267,7 +281,7 @@ impl LocusOptions {
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct LocusOptions {
     /// The bifurcation to follow: pitchfork, saddle-node or hopf of equilibria; orbit-pitchfork, orbit-saddle-node, period-doubling or
-    /// torus of periodic orbits; in a scene file the key `of`
+    /// torus of periodic orbits; or orbits, the periodic orbits of one period or amplitude, with --hold; in a scene file the key `of`
     #[arg(value_name = "BIFURCATION", value_parser = Names::of(CurveChoice::NAMES), hide_possible_values = true)]
     pub of: Option<String>,
     /// What slides; both V_H and K vary and are not given.
@@ -329,6 +343,15 @@ pub struct LocusOptions {
         help_heading = "Curve"
     )]
     pub plane: Option<String>,
+    /// Of orbits: follow those along which this expression, as of --watch, is zero, or has this value: "period = 20",
+    /// "x_max - x_min = 3"
+    #[arg(
+        long,
+        value_name = "CONDITION",
+        allow_hyphen_values = true,
+        help_heading = "Curve"
+    )]
+    pub hold: Option<String>,
     /// Range of a free parameter, NAME=A:B; repeatable
     #[arg(
         long,
@@ -345,6 +368,16 @@ pub struct LocusOptions {
         help_heading = "Curve"
     )]
     pub at: Vec<String>,
+    /// Label as UF every zero of EXPRESSION, or where EXPRESSION = VALUE: of the parameters and of what a row shows, as the states of an
+    /// equilibrium, or period and x_max - x_min of an orbit; repeatable
+    #[arg(
+        long,
+        value_name = "EXPRESSION",
+        value_delimiter = ';',
+        allow_hyphen_values = true,
+        help_heading = "Curve"
+    )]
+    pub watch: Vec<String>,
     /// Draw the curves in the plane of V_H and K as FILE.svg or FILE.png
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub plot: Option<PathBuf>,

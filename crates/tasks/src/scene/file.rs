@@ -246,7 +246,7 @@ impl Reader<'_> {
                 let pair = |(name, value): (&Spanned<_>, &Spanned<DeValue<'_>>)| {
                     let name: &std::borrow::Cow<'_, str> = name.get_ref();
                     let value = match value.get_ref() {
-                        DeValue::Array(items) if lists => list(items)?,
+                        DeValue::Array(items) if lists => list(items, ',')?,
                         value => scalar(value)?,
                     };
                     Some(format!("{name}={value}"))
@@ -258,7 +258,8 @@ impl Reader<'_> {
                     .join(separator)
             }
             DeValue::Array(items) if !numeric => {
-                list(items).ok_or_else(|| wrong("a list of numbers or names"))?
+                let between = option.get_value_delimiter().unwrap_or(',');
+                list(items, between).ok_or_else(|| wrong("a list of numbers or names"))?
             }
             _ => return Err(wrong(if numeric { "a number" } else { "a text" })),
         };
@@ -285,10 +286,10 @@ fn key_of(arg: &Arg) -> Option<&str> {
     }
 }
 
-/// Numbers or names, with commas between.
-fn list(items: &DeArray<'_>) -> Option<String> {
+/// Numbers or names, with commas or what else parts the values of an option between.
+fn list(items: &DeArray<'_>, between: char) -> Option<String> {
     let items: Option<Vec<String>> = items.iter().map(|item| scalar(item.get_ref())).collect();
-    Some(items?.join(","))
+    Some(items?.join(&between.to_string()))
 }
 
 fn scalar(value: &DeValue<'_>) -> Option<String> {

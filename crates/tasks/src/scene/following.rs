@@ -2,6 +2,7 @@
 
 use super::continuation::ContinuationOptions;
 use super::units::{Quantity, Units};
+use twinslip::bifurcation::UserFunction;
 use twinslip::equilibrium::Symmetry;
 use twinslip::error::{Error, Result, option_name};
 use twinslip::friction::positive;
@@ -146,12 +147,22 @@ pub(super) fn explain_symmetry(symmetry: Option<Symmetry>, interfaces: usize) ->
     format!("  symmetry          {words}\n")
 }
 
-/// The lines of a plan on steps, accuracy, landings and the crosscheck.
-pub(super) fn explain(following: &Following, at: &[f64]) -> String {
+/// The words of a plan on what is watched.
+pub(super) fn explain_watched(texts: &[String]) -> String {
+    match texts {
+        [] => "off: no `watch` is given".to_owned(),
+        texts => format!("zeros of {}, each solved for", texts.join("; ")),
+    }
+}
+
+/// The lines of a plan on steps, accuracy, landings, what is watched and the crosscheck.
+pub(super) fn explain(following: &Following, at: &[f64], watch: &[UserFunction]) -> String {
     let landings = match at.len() {
         0 => "off: no `at` values are given".to_owned(),
         n => format!("on {n} values, each solved for"),
     };
+    let texts: Vec<String> = watch.iter().map(|one| one.text.clone()).collect();
+    let watched = explain_watched(&texts);
     let second = match following.second {
         Some(second) => format!("{}, of every special point", second.name()),
         None => "off: `crosscheck` is not given".to_owned(),
@@ -161,6 +172,7 @@ pub(super) fn explain(following: &Following, at: &[f64]) -> String {
   points            at most {}
   special points    to {:e}, relatively
   landings          {landings}
+  watched           {watched}
   crosscheck        {second}
   rows              written as they come, and kept for the picture and the object",
         following.step, following.max_points, following.tolerance

@@ -2,7 +2,7 @@
 
 use super::continuation::LocusOptions;
 use super::following::{self, Following, landings, number, range};
-use super::general::by_name;
+use super::general::{RowKind, by_name, user_functions};
 use super::system::System;
 use super::units::{Quantity, Units};
 use serde_json::{Value, json};
@@ -19,7 +19,8 @@ pub struct CurveChoice {
     pub name: &'static str,
     /// As a picture has it.
     pub title: &'static str,
-    kind: LocusKind,
+    /// What bifurcates; nothing, along orbits that have a number in common.
+    kind: Option<LocusKind>,
     /// Whether it is of orbits.
     orbits: bool,
 }
@@ -33,12 +34,12 @@ const fn curve(
     CurveChoice {
         name,
         title,
-        kind,
+        kind: Some(kind),
         orbits,
     }
 }
 
-const CURVES: [CurveChoice; 8] = [
+const CURVES: [CurveChoice; 9] = [
     curve(
         "pitchfork",
         "pitchforks of equilibria",
@@ -77,7 +78,16 @@ const CURVES: [CurveChoice; 8] = [
         LocusKind::Homoclinic,
         true,
     ),
+    CurveChoice {
+        name: HELD,
+        title: "orbits",
+        kind: None,
+        orbits: true,
+    },
 ];
+
+/// The periodic orbits that have a number in common.
+const HELD: &str = "orbits";
 
 /// A curve that is asked for, checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -119,11 +129,15 @@ impl CurveChoice {
         [broken, broken_by_orbits]: [bool; 2],
     ) -> Vec<&'static str> {
         let occurs = |curve: &&CurveChoice| match curve.kind {
-            LocusKind::Pitchfork => broken,
-            LocusKind::OrbitPitchfork => broken_by_orbits,
-            LocusKind::SaddleNode => folds,
-            LocusKind::Hopf | LocusKind::OrbitSaddleNode | LocusKind::Homoclinic => variables > 1,
-            LocusKind::PeriodDoubling | LocusKind::Torus => variables > 2,
+            // They are no bifurcation, and need a number to hold.
+            None => false,
+            Some(LocusKind::Pitchfork) => broken,
+            Some(LocusKind::OrbitPitchfork) => broken_by_orbits,
+            Some(LocusKind::SaddleNode) => folds,
+            Some(LocusKind::Hopf | LocusKind::OrbitSaddleNode | LocusKind::Homoclinic) => {
+                variables > 1
+            }
+            Some(LocusKind::PeriodDoubling | LocusKind::Torus) => variables > 2,
         };
         CURVES
             .iter()
@@ -135,9 +149,26 @@ impl CurveChoice {
     /// The names of those of equilibria, with pitchforks where there is a symmetry that they break.
     pub(super) fn of_equilibria(broken: bool) -> Vec<&'static str> {
         let all = CURVES.iter().filter(|curve| !curve.orbits);
-        all.filter(|curve| broken || curve.kind != LocusKind::Pitchfork)
+        all.filter(|curve| broken || curve.kind != Some(LocusKind::Pitchfork))
             .map(|curve| curve.name)
             .collect()
+    }
+
+    /// Whether it is of orbits that have a number in common, and do not bifurcate; the option that says which must go with it.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for one without the other.
+    pub(super) fn holds(&self, hold: Option<&str>) -> Result<bool> {
+        match (self.kind, hold) {
+            (None, None) => Err(Error::Input(
+                "say by `hold` what the orbits of the curve have in common: \"period = 20\", for example".into(),
+            )),
+            (Some(_), Some(text)) => Err(Error::Input(format!(
+                "`hold` {text:?} belongs to a curve of {HELD}: the orbits of a curve of {} have in common that they bifurcate",
+                self.name
+            ))),
+            (kind, _) => Ok(kind.is_none()),
+        }
     }
 
     /// The curve of this name.
@@ -215,6 +246,10 @@ impl LocusPlan {
     pub fn new(options: &LocusOptions) -> Result<Self> {
         let options = &by_flags(options)?;
         let curve = CurveChoice::named(options.of.as_deref())?;
+        curve.holds(options.hold.as_deref())?;
+        let kind = curve
+            .kind
+            .ok_or_else(|| Error::Input(format!("`hold` has no curve of {} here", curve.name)))?;
         not_fixed(options)?;
         let system = match curve.orbits {
             false => System::several(&options.model)?,
@@ -236,13 +271,21 @@ impl LocusPlan {
             following::STIFFNESS,
         )?;
         let following = Following::new(&options.continuation, curve.orbits)?;
+        let rows = RowKind {
+            orbits: curve.orbits,
+            curve: true,
+            homoclinic: false,
+        };
+        let free = ["driving", "stiffness"];
+        let watch = user_functions(&options.watch, &system, (rows, &free))?;
         let request = LocusRequest {
+            watch,
             slab: InterfaceSystem {
                 law: system.law,
                 interfaces: system.interfaces,
                 loading: Loading::new(driving.0, stiffness.0)?,
             },
-            kind: curve.kind,
+            kind,
             symmetry: following::symmetry(&options.symmetry, system.interfaces)?,
             driving,
             stiffness,
@@ -295,7 +338,7 @@ impl LocusPlan {
             following::explain_symmetry(self.request.symmetry, self.system.interfaces),
             range("V_H", Quantity::SlipRate, self.request.driving),
             range("K", Quantity::Stiffness, self.request.stiffness),
-            following::explain(&self.following, &at.concat())
+            following::explain(&self.following, &at.concat(), &self.request.watch)
         )
     }
 
@@ -326,7 +369,7 @@ fn numerics(
         values.iter().map(|&x| units.outward(quantity, x)).collect()
     };
     let (driving, stiffness) = (request.driving, request.stiffness);
-    json!({
+    let mut numerics = json!({
         "of": name,
         "symmetry": options.symmetry,
         "driving_range": list(Quantity::SlipRate, &[driving.0, driving.1]),
@@ -337,5 +380,9 @@ fn numerics(
         "step_limit": following.step,
         "tolerance": following.tolerance,
         "crosscheck": following.second.map(|second| second.name()),
-    })
+    });
+    if !options.watch.is_empty() {
+        numerics["watch"] = json!(options.watch);
+    }
+    numerics
 }

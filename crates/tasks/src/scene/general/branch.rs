@@ -1,7 +1,7 @@
 //! Branches along any parameter, from options.
 
 use super::following::{self, Free, general, numbers, shown};
-use super::{GeneralRow, RowKind, Subject};
+use super::{GeneralRow, RowKind, Subject, Watched};
 use crate::scene::branch::BranchKind;
 use crate::scene::continuation::BranchOptions;
 use crate::scene::following::Following;
@@ -23,6 +23,8 @@ pub struct GeneralBranchPlan<'s> {
     pub subject: &'s dyn Subject,
     /// What varies.
     pub free: Free,
+    /// The formulas whose zeros are special points.
+    pub watched: Watched,
     /// How many times orbits may double their period.
     pub doublings: usize,
     /// How.
@@ -81,7 +83,13 @@ impl<'s> GeneralBranchPlan<'s> {
         following::varies(&options.model, &[along])?;
         following::both_symmetries(&options.symmetry)?;
         let following = Following::new(&options.continuation, orbits)?;
-        let numerics = json!({
+        let kind = RowKind {
+            orbits,
+            curve: false,
+            homoclinic: false,
+        };
+        let watched = Watched::new((None, &options.watch), subject, kind)?;
+        let mut numerics = json!({
             "of": of.name(),
             "along": along,
             "from": range.0,
@@ -92,14 +100,12 @@ impl<'s> GeneralBranchPlan<'s> {
             "crosscheck": following.second.map(|second| second.name()),
             "doublings": options.doublings,
         });
+        watched.told_in(&mut numerics);
         Ok(GeneralBranchPlan {
-            kind: RowKind {
-                orbits,
-                curve: false,
-                homoclinic: false,
-            },
+            kind,
             subject,
             free,
+            watched,
             doublings: of.doublings(options.doublings)?,
             following,
             numerics,
@@ -123,6 +129,7 @@ impl<'s> GeneralBranchPlan<'s> {
   method            {method}
   derivatives       exact, in the states and in {}
   landings          {}
+  watched           {}
   points            at most {}",
             self.free.name,
             out(self.free.range.0),
@@ -132,6 +139,7 @@ impl<'s> GeneralBranchPlan<'s> {
                 0 => "off: no `at` values are given".to_owned(),
                 n => format!("on {n} values, each solved for"),
             },
+            self.watched.explain(),
             self.following.max_points
         )
     }
@@ -145,9 +153,12 @@ impl<'s> GeneralBranchPlan<'s> {
         let coordinates = [self.free.coordinate, Coordinate::Logarithm];
         let family = self.subject.family(&[name], coordinates)?;
         let alike = self.subject.alike(&[name]);
+        let functions = self.watched.of(self.subject, &*family);
+        let family = functions.with(&*family);
+        let alike = alike.as_deref().map(|alike| functions.with(alike));
         let system = GeneralSystem {
-            family: &*family,
-            alike: alike.as_deref(),
+            family: &family,
+            alike: alike.as_ref().map(|alike| alike as _),
             difference: None,
             names: [name; 2],
             interchangeable: &[],
@@ -171,20 +182,22 @@ impl<'s> GeneralBranchPlan<'s> {
         let coordinates = [self.free.coordinate, Coordinate::Logarithm];
         let family = self.subject.family(&[name], coordinates)?;
         let alike = self.subject.alike(&[name]);
+        let functions = self.watched.of(self.subject, &*family);
+        let family = functions.with(&*family);
+        let alike = alike.as_deref().map(|alike| functions.with(alike));
         let equilibria_at = |at: [f64; 2]| {
             let value = family.parameters(at)[0];
             self.subject
                 .equilibria(&[(name, self.free.asked(at[0]).unwrap_or(value))])
         };
-        let within =
-            |point: &GeneralPoint, sharp: bool| self.subject.within(&*family, point, sharp);
+        let within = |point: &GeneralPoint, sharp: bool| self.subject.within(&family, point, sharp);
         let clusters = !self.subject.clusters().is_empty();
         let interchangeable = self.subject.interchangeable();
         let bounds = self.subject.bounds();
         let mut branch = GeneralBranch {
             system: GeneralSystem {
-                family: &*family,
-                alike: alike.as_deref(),
+                family: &family,
+                alike: alike.as_ref().map(|alike| alike as _),
                 difference: None,
                 names: [name; 2],
                 interchangeable: &interchangeable,
@@ -195,6 +208,7 @@ impl<'s> GeneralBranchPlan<'s> {
             beyond: self.free.beyond(),
             held: 0.0,
             at: self.free.landings(),
+            watch: self.watched.texts.clone(),
             orbit: None,
             found: None,
             hopfs: None,
@@ -225,7 +239,7 @@ impl<'s> GeneralBranchPlan<'s> {
         let mut look = |event: GeneralEvent| {
             met += 1;
             let how = (self.kind, self.following.tolerance);
-            let found = found(self.subject, &*family, how, &[&self.free], event);
+            let found = found(self.subject, &family, how, &[&self.free], event);
             match found {
                 Ok(found) => seen(found),
                 Err(error) => {

@@ -2,7 +2,7 @@
 
 use super::branch::{GeneralFound, found};
 use super::following::{self, Free, general, numbers};
-use super::{GeneralRow, RowKind, Subject};
+use super::{GeneralRow, RowKind, Subject, Watched};
 use crate::scene::continuation::LocusOptions;
 use crate::scene::following::Following;
 use crate::scene::locus::CurveChoice;
@@ -14,7 +14,7 @@ use twinslip::bifurcation::general::{
 };
 use twinslip::error::{Error, Result};
 use twinslip::integrate::Choice;
-use twinslip::orbit::TestFunction;
+use twinslip::orbit::{ParametrisedField, TestFunction};
 
 /// A curve that is asked for, checked.
 pub struct GeneralLocusPlan<'s> {
@@ -28,6 +28,8 @@ pub struct GeneralLocusPlan<'s> {
     pub subject: &'s dyn Subject,
     /// What varies.
     pub free: [Free; 2],
+    /// The formulas whose zeros are special points.
+    pub watched: Watched,
     criticality: bool,
     /// How.
     pub following: Following,
@@ -85,6 +87,7 @@ impl<'s> GeneralLocusPlan<'s> {
     /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
     pub fn new(options: &LocusOptions, subject: &'s dyn Subject) -> Result<Self> {
         let choice = CurveChoice::named(options.of.as_deref())?;
+        choice.holds(options.hold.as_deref())?;
         let bifurcation = match choice.name {
             "saddle-node" => GeneralBifurcation::Equilibrium(EquilibriumBifurcation::Fold),
             "pitchfork" if subject.has_equal_parts() => {
@@ -97,6 +100,7 @@ impl<'s> GeneralLocusPlan<'s> {
             "orbit-saddle-node" => GeneralBifurcation::Orbit(TestFunction::Fold),
             "period-doubling" => GeneralBifurcation::Orbit(TestFunction::Doubling),
             "torus" => GeneralBifurcation::Orbit(TestFunction::Torus),
+            _ if choice.holds(options.hold.as_deref())? => GeneralBifurcation::Held,
             "homoclinic" => GeneralBifurcation::Homoclinic,
             other => {
                 return Err(Error::Input(format!(
@@ -163,8 +167,8 @@ impl<'s> GeneralLocusPlan<'s> {
             Free::new(subject, ("in", names[i]), range, &at)
         };
         let free = [free(0)?, free(1)?];
+        let orbits = choice.of_orbits();
         let homoclinic = bifurcation == GeneralBifurcation::Homoclinic;
-        let orbits = homoclinic || matches!(bifurcation, GeneralBifurcation::Orbit(_));
         match options.search.start.is_some() && orbits {
             true => following::starts_at(&options.model, &names)?,
             false => following::varies(&options.model, &names)?,
@@ -184,7 +188,19 @@ impl<'s> GeneralLocusPlan<'s> {
         let list = |free: &Free, all: &[f64]| -> Vec<f64> {
             all.iter().map(|&x| outward(free, x)).collect()
         };
-        let numerics = json!({
+        let kind = RowKind {
+            orbits: orbits && !homoclinic,
+            curve: true,
+            homoclinic,
+        };
+        if homoclinic && !options.watch.is_empty() {
+            return Err(Error::Input(format!(
+                "`watch` {:?} has no meaning along a curve of homoclinic orbits, which have no period and no extremes that are known",
+                options.watch[0]
+            )));
+        }
+        let watched = Watched::new((options.hold.as_deref(), &options.watch), subject, kind)?;
+        let mut numerics = json!({
             "of": choice.name,
             "in": names,
             "ranges": free.each_ref().map(|free| list(free, &[free.range.0, free.range.1])),
@@ -194,13 +210,11 @@ impl<'s> GeneralLocusPlan<'s> {
             "tolerance": following.tolerance,
             "crosscheck": following.second.map(|second| second.name()),
         });
+        watched.told_in(&mut numerics);
         Ok(GeneralLocusPlan {
             choice,
-            kind: RowKind {
-                orbits: orbits && !homoclinic,
-                curve: true,
-                homoclinic,
-            },
+            kind,
+            watched,
             bifurcation,
             subject,
             free,
@@ -231,9 +245,13 @@ impl<'s> GeneralLocusPlan<'s> {
             }
         };
         format!(
-            "plan of this command\n  curve             {}\n{}  method            {method}\n  points            at most {}",
-            self.choice.name,
+            "plan of this command\n  curve             {}\n{}  method            {method}\n  watched           {}\n  points            at most {}",
+            match self.bifurcation {
+                GeneralBifurcation::Held => format!("orbits with {}", self.watched.texts[0]),
+                _ => self.choice.name.to_owned(),
+            },
             ranges.concat(),
+            self.watched.explain(),
             self.following.max_points
         )
     }
@@ -247,9 +265,12 @@ impl<'s> GeneralLocusPlan<'s> {
         let coordinates = self.free.each_ref().map(|free| free.coordinate);
         let family = self.subject.family(&names, coordinates)?;
         let alike = self.subject.alike(&names);
+        let functions = self.watched.of(self.subject, &*family);
+        let family = functions.with(&*family);
+        let alike = alike.as_deref().map(|alike| functions.with(alike));
         let system = GeneralSystem {
-            family: &*family,
-            alike: alike.as_deref(),
+            family: &family,
+            alike: alike.as_ref().map(|alike| alike as _),
             difference: None,
             names,
             interchangeable: &[],
@@ -264,8 +285,11 @@ impl<'s> GeneralLocusPlan<'s> {
     fn nothing(&self) -> Error {
         Error::NoOrbit {
             what: format!(
-                "no {} bifurcation is found in these ranges",
-                self.choice.name
+                "no {} found in these ranges",
+                match self.bifurcation {
+                    GeneralBifurcation::Held => format!("orbit with {} is", self.watched.texts[0]),
+                    _ => format!("{} bifurcation is", self.choice.name),
+                }
             ),
             period: None,
             hint: "give other ranges, or a `start` near an equilibrium or an orbit, or a `box` with all equilibria",
@@ -285,6 +309,9 @@ impl<'s> GeneralLocusPlan<'s> {
         let coordinates = self.free.each_ref().map(|free| free.coordinate);
         let family = self.subject.family(&names, coordinates)?;
         let alike = self.subject.alike(&names);
+        let functions = self.watched.of(self.subject, &*family);
+        let family = functions.with(&*family);
+        let alike = alike.as_deref().map(|alike| functions.with(alike));
         let equilibria = |at: [f64; 2]| {
             let values = family.parameters(at);
             let value = |i: usize| self.free[i].asked(at[i]).unwrap_or(values[i]);
@@ -313,8 +340,8 @@ impl<'s> GeneralLocusPlan<'s> {
         let bounds = self.subject.bounds();
         let curve = GeneralCurve {
             system: GeneralSystem {
-                family: &*family,
-                alike: alike.as_deref(),
+                family: &family,
+                alike: alike.as_ref().map(|alike| alike as _),
                 difference: None,
                 names,
                 interchangeable: &interchangeable,
@@ -325,6 +352,7 @@ impl<'s> GeneralLocusPlan<'s> {
             ranges: self.free.each_ref().map(Free::ends),
             beyond: self.free.each_ref().map(Free::beyond),
             at: self.free.each_ref().map(Free::landings),
+            watch: self.watched.texts.clone(),
             orbit,
             own: own_place,
             seeds: None,
@@ -340,7 +368,7 @@ impl<'s> GeneralLocusPlan<'s> {
             met += 1;
             let free = self.free.each_ref();
             let how = (self.kind, self.following.tolerance);
-            match found(self.subject, &*family, how, &free, event) {
+            match found(self.subject, &family, how, &free, event) {
                 Ok(found) => seen(found),
                 Err(error) => {
                     failed = Some(error);

@@ -6,6 +6,7 @@ mod locus;
 mod row;
 mod slab;
 mod text;
+mod watch;
 
 pub use branch::{GeneralBranchPlan, GeneralFound};
 pub use following::{Free, shown};
@@ -14,13 +15,17 @@ pub(super) use locus::{by_name, ends};
 pub use row::{GeneralRow, RowKind};
 pub use slab::SlabSubject;
 pub use text::TextSubject;
+pub use watch::Watched;
+pub(super) use watch::user_functions;
 
 use super::system::Described;
 use super::units::Quantity;
 use twinslip::bifurcation::general::{GeneralPoint, StateRange};
 use twinslip::error::Result;
 use twinslip::field::Vector;
-use twinslip::orbit::{ContinuationPoint, Coordinate, ParametrisedField, WithinCluster};
+use twinslip::orbit::{
+    ContinuationPoint, Coordinate, Digits, ParametrisedField, Solution, WithinCluster,
+};
 
 /// A system with parameters by name, to be continued in any of these.
 pub trait Subject: Described + Sync {
@@ -134,9 +139,14 @@ pub trait Subject: Described + Sync {
     /// What rows tell of a state or an orbit: names and quantities.
     fn numbers(&self, kind: RowKind) -> Vec<(String, Quantity)>;
 
-    /// These numbers of a point.
+    /// These numbers of a solution at coordinates of a family.
     ///
     /// # Errors
     /// Those of the flow along an orbit.
-    fn told(&self, family: &dyn ParametrisedField, point: &GeneralPoint) -> Result<Vec<f64>>;
+    fn told(
+        &self,
+        there: (&dyn ParametrisedField, [f64; 2]),
+        solution: Solution<'_>,
+        digits: Digits,
+    ) -> Result<Vec<f64>>;
 }

@@ -13,7 +13,7 @@ use twinslip::equilibrium::{Symmetry, Verdict};
 use twinslip::error::Result;
 use twinslip::field::Vector;
 use twinslip::number::{Uncertain, eigenvector};
-use twinslip::orbit::ParametrisedField;
+use twinslip::orbit::{Digits, ParametrisedField};
 
 /// What rows are of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -85,7 +85,7 @@ impl GeneralRow {
         (kind, names): (RowKind, &[(&'static str, Quantity)]),
         point: GeneralPoint,
     ) -> Result<Self> {
-        let numbers = subject.told(family, &point)?;
+        let numbers = subject.told((family, point.at), point.solution.seen(None), Digits::Six)?;
         let time = subject.unit_of_time();
         // |q|^2 of the eigenvector at a Hopf point, where it is 1 in the units in which it is followed.
         let square = oscillation(family, &point).map_or(1.0, |parts| {

@@ -6,7 +6,6 @@ use crate::scene::plan::{self, Point};
 use crate::scene::system::{Described, System};
 use crate::scene::units::{Quantity, Units};
 use serde_json::{Map, Value};
-use twinslip::bifurcation::general::{GeneralPoint, GeneralSolution};
 use twinslip::equilibrium::{Symmetry, unequal_steady_states};
 use twinslip::error::{Error, Result};
 use twinslip::field::{Matrix, Parametrised, State, Vector};
@@ -14,9 +13,9 @@ use twinslip::friction::{AnyLaw, Law, Parameters, UnequalLaws, positive};
 use twinslip::integrate::AnyField;
 use twinslip::model::{AlikeInterfaces, Driven, Loading, UnequalInterfaces};
 use twinslip::orbit::{
-    ContinuationPoint, Coordinate, InitialGuess, InterfaceSystem, OrbitAccuracy, OverInterfaces,
-    OverLogarithms, ParametrisedField, Profile, Query, ShootingNodes, find, find_either,
-    find_unequal, profile_of,
+    ContinuationPoint, Coordinate, Digits, InitialGuess, InterfaceSystem, OrbitAccuracy,
+    OverInterfaces, OverLogarithms, ParametrisedField, Profile, Query, ShootingNodes, Solution,
+    find, find_either, find_unequal, profile_of,
 };
 
 /// Interfaces with V_H and K.
@@ -140,7 +139,7 @@ impl SlabSubject {
     }
 
     /// What rows tell of a profile.
-    fn shown(&self, profile: &Profile) -> Vec<f64> {
+    pub(super) fn shown(&self, profile: &Profile) -> Vec<f64> {
         let (least, most) = profile.stress_range;
         let shown = self.system.interfaces;
         let pairs = [profile.state, profile.slip_rate].into_iter();
@@ -424,14 +423,19 @@ impl Subject for SlabSubject {
             .collect()
     }
 
-    fn told(&self, family: &dyn ParametrisedField, point: &GeneralPoint) -> Result<Vec<f64>> {
-        let values = family.parameters(point.at);
+    fn told(
+        &self,
+        (family, at): (&dyn ParametrisedField, [f64; 2]),
+        solution: Solution<'_>,
+        digits: Digits,
+    ) -> Result<Vec<f64>> {
+        let values = family.parameters(at);
         let names = self.parameters();
         let places = family.plane();
         let there = [0, 1].map(|i| (names[places[i]].0, values[i]));
         let interfaces = self.at(&there)?;
-        let profile = match &point.solution {
-            GeneralSolution::Equilibrium { state, .. } => {
+        let profile = match solution {
+            Solution::Equilibrium { state, .. } => {
                 let y = State::<3>::new(state[0], state[1], state[state.len() - 1]);
                 Profile {
                     mean_stress: y[0],
@@ -440,11 +444,11 @@ impl Subject for SlabSubject {
                     slip_rate: interfaces.slip_rates(&y),
                 }
             }
-            GeneralSolution::Orbit { shooting, .. } => {
+            Solution::Orbit(shooting) => {
                 let rates = |y: &State<3>| interfaces.slip_rates(y);
                 if self.is_single() {
-                    let field = family.field(point.at);
-                    return Ok(self.shown(&profile_of(&field, &rates, shooting)?));
+                    let field = family.field(at);
+                    return Ok(self.shown(&profile_of(&field, &rates, shooting, digits)?));
                 }
                 let field = AnyField::of::<3>(&interfaces);
                 // In the states in which both move alike there is one state for both.
@@ -453,7 +457,7 @@ impl Subject for SlabSubject {
                     nodes: shooting.nodes.iter().map(whole).collect(),
                     durations: shooting.durations.clone(),
                 };
-                profile_of(&field, &rates, &shooting)?
+                profile_of(&field, &rates, &shooting, digits)?
             }
         };
         Ok(self.shown(&profile))

@@ -16,8 +16,8 @@ use twinslip::integrate::{AnyField, Choice, MotionUnits, Tolerances};
 use twinslip::model::TextSystem;
 use twinslip::number::Interval;
 use twinslip::orbit::{
-    AlongArcs, ContinuationPoint, Coordinate, FoundOrbit, OrbitAccuracy, OverText,
-    ParametrisedField, WithinCluster, find_from, ranges,
+    AlongArcs, ContinuationPoint, Coordinate, Digits, FoundOrbit, OrbitAccuracy, OverText,
+    ParametrisedField, Solution, WithinCluster, find_from, ranges,
 };
 
 /// A user-defined system, and where its equilibria and orbits are looked for.
@@ -308,13 +308,18 @@ impl Subject for TextSubject {
         }
     }
 
-    fn told(&self, family: &dyn ParametrisedField, point: &GeneralPoint) -> Result<Vec<f64>> {
-        match &point.solution {
-            GeneralSolution::Equilibrium { state, .. } => {
+    fn told(
+        &self,
+        (family, at): (&dyn ParametrisedField, [f64; 2]),
+        solution: Solution<'_>,
+        digits: Digits,
+    ) -> Result<Vec<f64>> {
+        match solution {
+            Solution::Equilibrium { state, .. } => {
                 Ok(self.units.outward(state).as_slice().to_vec())
             }
-            GeneralSolution::Orbit { shooting, .. } => {
-                let ranges = ranges(&family.field(point.at), shooting)?;
+            Solution::Orbit(shooting) => {
+                let ranges = ranges(&family.field(at), shooting, digits)?;
                 let ranges = ranges.into_iter().zip(&self.units.sizes);
                 let ranges = ranges.take(self.model.moving());
                 Ok(ranges

@@ -61,6 +61,29 @@ pub(super) fn lowered_apart(
     each.map(one).collect()
 }
 
+/// Carries out an operation that is no name with the last numbers of a stack.
+pub(super) fn operation(
+    builder: &mut Builder,
+    token: &Token,
+    stack: &mut Vec<Place>,
+) -> Result<Place> {
+    let mut pop = || stack.pop().expect("operands stand before their operator");
+    match *token {
+        Token::Number(x) => builder.number(x),
+        Token::Negative => builder.negative(pop()),
+        Token::Binary(binary) => {
+            let b = pop();
+            builder.binary(binary, pop(), b)
+        }
+        Token::Call(function) if function.arguments() == 2 => {
+            let b = pop();
+            builder.call(function, &[pop(), b])
+        }
+        Token::Call(function) => builder.call(function, &[pop()]),
+        Token::Name(_) => unreachable!("names are looked up"),
+    }
+}
+
 /// How far a formula of `[where]` is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Progress {
@@ -118,32 +141,13 @@ impl<'t, 'a> Lowering<'t, 'a> {
         for item in &formula.items {
             let made = match &item.token {
                 Token::Name(name) => self.named(formula, item.at, name)?,
-                token => self
-                    .operation(token, &mut stack)
+                token => operation(&mut self.builder, token, &mut stack)
                     .map_err(|error| self.wrong(formula, item.at, error.to_string()))?,
             };
             stack.push(made);
         }
         let whole = stack.pop().filter(|_| stack.is_empty());
         whole.ok_or_else(|| self.wrong(formula, 0, "the formula is incomplete"))
-    }
-
-    fn operation(&mut self, token: &Token, stack: &mut Vec<Place>) -> Result<Place> {
-        let mut pop = || stack.pop().expect("operands stand before their operator");
-        match *token {
-            Token::Number(x) => self.builder.number(x),
-            Token::Negative => self.builder.negative(pop()),
-            Token::Binary(binary) => {
-                let b = pop();
-                self.builder.binary(binary, pop(), b)
-            }
-            Token::Call(function) if function.arguments() == 2 => {
-                let b = pop();
-                self.builder.call(function, &[pop(), b])
-            }
-            Token::Call(function) => self.builder.call(function, &[pop()]),
-            Token::Name(_) => unreachable!("names are looked up"),
-        }
     }
 
     fn named(&mut self, formula: &Formula<'_>, at: usize, name: &str) -> Result<Place> {

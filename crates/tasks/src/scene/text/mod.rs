@@ -4,6 +4,7 @@ mod equilibria;
 mod file;
 mod fingerprint;
 mod forcing;
+mod formula;
 mod friction;
 mod grammar;
 mod law;
@@ -25,6 +26,7 @@ pub use equilibria::{SearchPlace, TextEquilibria, TextEquilibriaPlan, TextEquili
 pub(in crate::scene) use file::PHASE;
 pub use file::SystemFile;
 pub(super) use forcing::not_forced;
+pub(in crate::scene) use formula::NamedFormula;
 pub use friction::{Friction, Steady};
 pub(super) use law::curve_of_formulas;
 pub use law_file::LawFile;
