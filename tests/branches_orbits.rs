@@ -242,7 +242,7 @@ fn a_second_method_finds_the_same_points() {
     let mut checked = 0;
     for special in &heard.special {
         let difference = orbits::crosscheck(
-            &request.slab,
+            (&request.slab, &[]),
             special,
             Choice::named("rodas5p").expect("a method"),
         )

@@ -261,7 +261,7 @@ fn a_second_method_finds_the_same_points() {
         let special = whole(kind).nearest(label, driving);
         assert!((special.driving.value / driving - 1.0).abs() < 1e-2);
         let slab = two(1.0, 0.1);
-        let difference = orbits::crosscheck(&slab, special, method).expect("a point");
+        let difference = orbits::crosscheck((&slab, &[]), special, method).expect("a point");
         let [driving, stiffness, period] = difference.expect("an orbit");
         let largest = driving.abs().max(stiffness.abs()).max(period.abs());
         assert!(largest < 1e-9, "{kind:?} {special:?}: {difference:?}");

@@ -172,5 +172,6 @@ mod transport;
 mod unequal;
 mod unequal_commands;
 mod unequal_equilibria;
+mod user_functions;
 mod versions;
 mod work_precision;

@@ -65,6 +65,7 @@ impl SolutionCurve for Circle {
             WatchedFunction::TestFunction(Cosine(c)) => at.cos() - c,
             WatchedFunction::Turn(_) => -at.sin(),
             WatchedFunction::Value(_, value) => at.cos() - value,
+            WatchedFunction::UserFunction(_) => f64::NAN,
         }
     }
 

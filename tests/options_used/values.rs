@@ -17,7 +17,7 @@ use Change::{Exempt, File, To, With};
 
 /// What is refused for every kind that is run here: of two commands that share their options what is of orbits alone, what a law has none of, and all
 /// clusters where all steady states are found; what varies in time where nothing moves. What varies is given to no run of these kinds.
-pub const NEVER: [(&str, &str); 22] = [
+pub const NEVER: [(&str, &str); 23] = [
     ("branch equilibria", "crosscheck"),
     ("branch equilibria", "doublings"),
     ("branch equilibria", "modulate"),
@@ -35,6 +35,7 @@ pub const NEVER: [(&str, &str); 22] = [
     ("law", "system"),
     ("locus hopf", "crosscheck"),
     ("locus hopf", "driving"),
+    ("locus hopf", "hold"),
     ("locus hopf", "period-guess"),
     ("locus hopf", "stiffness"),
     ("locus hopf", "system"),
@@ -230,6 +231,24 @@ pub fn change(command: &str, kind: Kind, option: &str) -> Option<Change> {
         "stiffness-range" if kind == Si => To("5.42e9:5.5e9"),
         "stiffness-range" => To("0.1395:0.141"),
         "step-limit" => To("0.3"),
+        "hold" => To("period=1"),
+        "watch" if command == "branch equilibria" => To(match kind {
+            System => "z=24",
+            Si => "driving=2e-4",
+            _ => "driving=190",
+        }),
+        "watch" if command == "branch orbits" => To(match kind {
+            System => "period=6.3",
+            Clusters => "driving=188",
+            Two => "driving=187",
+            Unequal => "driving=231.1",
+            _ => "driving=225",
+        }),
+        "watch" => To(match kind {
+            System => "r=24.8",
+            Si => "stiffness=5.45e9",
+            _ => "stiffness=0.14",
+        }),
         "surface" if system => To(if command == "sweep" { "y" } else { "x=1.1" }),
         "surface" => To("stress=9.5"),
         "symmetry" => To("asymmetric"),
