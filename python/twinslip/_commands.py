@@ -539,6 +539,7 @@ class Commands:
         along: Text = None,
         symmetry: Text = None,
         at: Text = None,
+        watch: Text = None,
         doublings: Count = None,
         box: Text = None,
         start: Text = None,
@@ -572,6 +573,10 @@ class Commands:
         at : sequence of float, optional
             Values of the free parameter to land on exactly, comma-separated; their rows have the
             label UZ
+        watch : str or sequence of str, optional
+            Label as UF every zero of EXPRESSION, or where EXPRESSION = VALUE: of the parameters
+            and of what a row shows, as the states of an equilibrium, or period and x_max - x_min
+            of an orbit; repeatable
         doublings : int, optional
             Number of period doublings to follow: the branches of orbits with doubled period are
             computed too [default: 0]
@@ -630,8 +635,10 @@ class Commands:
         at_stiffness: Text = None,
         criticality: bool = False,
         within: Text = None,
+        hold: Text = None,
         range: Text = None,
         at: Text = None,
+        watch: Text = None,
         box: Text = None,
         start: Text = None,
         period_guess: Number = None,
@@ -649,8 +656,9 @@ class Commands:
         ----------
         of : str, optional
             The bifurcation to follow: pitchfork, saddle-node or hopf of equilibria; orbit-
-            pitchfork, orbit-saddle-node, period-doubling or torus of periodic orbits; in a scene
-            file the key `of`
+            pitchfork, orbit-saddle-node, period-doubling or torus of periodic orbits; or orbits,
+            the periodic orbits of one period or amplitude, with ``hold``; in a scene file the key
+            `of`
         ensemble : str, optional
             Propagate the uncertainty of a fit: the parameters of a law from `twinslip fit`, with
             their covariance. Numbers get a 95 % interval, yes-or-no results a probability. Implies
@@ -669,11 +677,18 @@ class Commands:
         within : (str, str), optional
             The two free parameters by name, each with a range if needed: NAME1=A:B,NAME2=C:D
             [default: driving,stiffness]
+        hold : str, optional
+            Of orbits: follow those along which this expression, as of ``watch``, is zero, or has
+            this value: "period = 20", "x_max - x_min = 3"
         range : dict of (A, B), optional
             Range of a free parameter, NAME=A:B; repeatable
         at : dict of sequences of float, optional
             Values of a free parameter to land on exactly at every crossing, NAME=V1,V2,...;
             repeatable
+        watch : str or sequence of str, optional
+            Label as UF every zero of EXPRESSION, or where EXPRESSION = VALUE: of the parameters
+            and of what a row shows, as the states of an equilibrium, or period and x_max - x_min
+            of an orbit; repeatable
         box : dict of (A, B), optional
             With ``system`` or a ``law`` from a file: branches of equilibria begin at all
             equilibria in a box, a range for every state, and end where they leave it:
