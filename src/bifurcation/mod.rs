@@ -8,17 +8,17 @@ mod homoclinic;
 pub mod orbits;
 mod request;
 pub mod strong_resonance;
+mod user_function;
 
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::{Error, Result};
-use crate::model::Loading;
 use crate::number::Uncertain;
-use crate::orbit::{InterfaceSystem, Profile};
-use std::fmt;
+use crate::orbit::InterfaceSystem;
 use std::ops::ControlFlow;
-use std::sync::Arc;
 
 pub use crate::model::Parameter;
+use user_function::zero_note;
+pub use user_function::{ProfileFunction, UserFunction};
 
 /// What a point is, in AUTO's letters where AUTO has them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -433,46 +433,6 @@ impl Event {
 
 /// Whether to go on.
 pub type EventObserver<'a> = &'a mut dyn FnMut(Event) -> ControlFlow<()>;
-
-/// The value of a function of what interfaces do: at V_H and K, of an equilibrium or of an orbit by what is told of it, with the period of the orbit or of
-/// the oscillation at a Hopf point. NaN where it is undefined.
-pub type ProfileFunction = dyn Fn(Loading, &Profile, Option<f64>) -> f64 + Send + Sync;
-
-/// A function of what interfaces do whose zeros are special points.
-#[derive(Clone)]
-pub struct UserFunction {
-    /// In words, which the special points have in their notes.
-    pub text: String,
-    /// Its value.
-    pub value: Arc<ProfileFunction>,
-}
-
-impl UserFunction {
-    /// The note of a zero.
-    fn note(&self) -> String {
-        zero_note(&self.text)
-    }
-}
-
-/// The note of a zero of `EXPRESSION`, or of `EXPRESSION = VALUE`.
-fn zero_note(text: &str) -> String {
-    match text.contains('=') {
-        true => text.to_owned(),
-        false => format!("{text} = 0"),
-    }
-}
-
-impl fmt::Debug for UserFunction {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("UserFunction").field(&self.text).finish()
-    }
-}
-
-impl PartialEq for UserFunction {
-    fn eq(&self, other: &Self) -> bool {
-        self.text == other.text && Arc::ptr_eq(&self.value, &other.value)
-    }
-}
 
 /// A branch that is asked for.
 #[derive(Debug, Clone, PartialEq)]
