@@ -55,16 +55,19 @@ impl Corrector<'_> {
         spectrum: &Spectrum,
         conditions: &[Condition<'_>],
     ) -> Option<Vec<f64>> {
-        /// Smaller closings are not looked at.
+        /// Smaller closings are not looked at where that takes a flow along the orbit's neighbours: what the user's functions hold is held in every row.
         const SMALL: f64 = 1e-7;
         let functions: Vec<_> = conditions.iter().filter(|one| is_function(one)).collect();
         let length = closing.dot(closing).sqrt();
         let (size, stretch) = site.size(closing);
-        if functions.is_empty() || size.max(stretch) < SMALL || length == 0.0 {
+        let tested = functions.iter().any(|one| test_function(one).is_some());
+        let users = functions.iter().any(|one| test_function(one).is_none());
+        let is_small = size.max(stretch) < SMALL && !users;
+        if functions.is_empty() || is_small || length == 0.0 {
             return Some(vec![0.0; functions.len()]);
         }
         let direction = closing.clone().scaled(1.0 / length);
-        let change = match functions.iter().any(|one| test_function(one).is_some()) {
+        let change = match tested {
             true => Some(self.change(site, linear, &direction, spectrum)?),
             false => None,
         };
