@@ -27,7 +27,7 @@ const MODELS: [&str; 14] = [
 ];
 
 /// What `locus` may be asked for.
-const LOCI: [&str; 7] = [
+const LOCI: [&str; 8] = [
     "pitchfork",
     "saddle-node",
     "hopf",
@@ -35,6 +35,7 @@ const LOCI: [&str; 7] = [
     "orbit-saddle-node",
     "period-doubling",
     "torus",
+    "homoclinic",
 ];
 
 fn words(options: &str) -> Vec<String> {
@@ -310,7 +311,8 @@ fn systems_tell_their_text_and_a_section() {
             "hopf",
             "orbit-saddle-node",
             "period-doubling",
-            "torus"
+            "torus",
+            "homoclinic"
         ]
     );
     let file = fs::read_to_string(Path::new(ROOT).join("scenes/systems/lorenz.toml"));
@@ -548,7 +550,8 @@ fn loci_are_those_that_locus_follows() {
         let axes: Vec<&str> = axes.iter().map(String::as_str).collect();
         for kind in LOCI {
             let is_told = names(&told, "loci").iter().any(|name| name == kind);
-            let near = kind.starts_with("orbit") || ["period-doubling", "torus"].contains(&kind);
+            let near = kind.starts_with("orbit")
+                || ["period-doubling", "torus", "homoclinic"].contains(&kind);
             let ends = |name: &&str| {
                 let one = parameter(&told, name);
                 let value = number(&one, "/value");

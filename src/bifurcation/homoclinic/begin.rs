@@ -22,6 +22,8 @@ const AGAIN: f64 = 3.0;
 const LINEAR: f64 = 0.3;
 /// ln of what arcs near the equilibrium grow by.
 const GROWTH: f64 = 4.0;
+/// Arcs that have become longer by more than this are divided.
+pub(super) const LONGER: f64 = 2.0;
 /// What is joined is no longer than this, in parts of the extent of the orbit.
 const FAR: f64 = 0.1;
 
@@ -219,17 +221,23 @@ impl Solver<'_> {
         self.point(solved, &along, None)
     }
 
-    /// The same connection over other nodes: long arcs are divided, short ones joined.
+    /// The same connection over other nodes: arcs that grow much, or have become much longer than they were chosen, are divided, short ones joined.
     ///
     /// # Errors
     /// Those of the flow.
-    pub fn spread(&mut self, old: &Connection, growths: &[f64]) -> Result<Connection> {
+    pub fn spread(
+        &mut self,
+        old: &Connection,
+        growths: &[f64],
+        chosen: &[f64],
+    ) -> Result<Connection> {
         let field = self.family.field(old.at);
         let (mut nodes, mut durations) = (vec![old.nodes[0].clone()], Vec::new());
         let (mut time, mut grown, mut path) = (0.0, 0.0, 0.0);
         for (k, (&duration, growth)) in old.durations.iter().zip(growths).enumerate() {
             let growth = growth.max(0.0);
-            let parts = (growth / GROWTH).ceil().max(1.0);
+            let longer = (duration / chosen[k] / LONGER).ceil();
+            let parts = (growth / GROWTH).ceil().max(longer).max(1.0);
             let way = (&old.nodes[k + 1] - &old.nodes[k]).component_div(&self.frame.sizes);
             let way = way.amax();
             if time > 0.0 && (grown + growth > GROWTH || path + way > FAR) {

@@ -258,6 +258,7 @@ impl Solver<'_> {
         let field = self.family.field(at.at);
         let places = self.family.plane();
         let scale = self.family.scale(at.at);
+        let units = [0, 1].map(|i| scale[i] * frame.widths[i]);
         let inward = |x: Vector| x.component_div(&frame.sizes);
         let in_frame =
             |a: &Matrix| Matrix::from_fn(n, n, |i, j| a[(i, j)] * frame.sizes[j] / frame.sizes[i]);
@@ -279,7 +280,7 @@ impl Solver<'_> {
         errors.rows_mut(0, n).fill(4.0 * rounding(&at.saddle));
         for i in 0..2 {
             let slope = inward(field.parameter_derivative(&at.saddle, places[i]));
-            let slope = slope * (scale[i] * frame.widths[i] / size);
+            let slope = slope * (units[i] / size);
             rows.view_mut((0, layout.parameter(i)), (n, 1))
                 .copy_from(&slope);
         }
@@ -296,9 +297,8 @@ impl Solver<'_> {
             let speed = inward(field.f(&arc.end)) * -at.durations[k];
             rows.view_mut((first, layout.duration(k)), (n, 1))
                 .copy_from(&speed);
-            for i in 0..2 {
-                let slope = inward(arc.parameters.column(i).into_owned());
-                let slope = slope * (-scale[i] * frame.widths[i]);
+            for (i, unit) in units.iter().enumerate() {
+                let slope = inward(arc.parameters.column(i).into_owned()) * -*unit;
                 rows.view_mut((first, layout.parameter(i)), (n, 1))
                     .copy_from(&slope);
             }
@@ -358,7 +358,7 @@ impl Solver<'_> {
             }
             for i in 0..2 {
                 let slope = inward(field.parameter_jacobian(&at.saddle, places[i]) * &right);
-                let slope = slope * (scale[i] * frame.widths[i]);
+                let slope = slope * (units[i]);
                 rows[(row, layout.parameter(i))] = singular.left.dot(&slope);
             }
             gaps[row] = singular.value;
@@ -460,10 +460,10 @@ impl Linear {
         let layout = at.layout();
         let n = layout.dimension;
         let inward = |x: Vector| x.component_div(&frame.sizes);
-        for k in 1..layout.arcs {
+        for (k, place) in allowed.iter().enumerate().take(layout.arcs).skip(1) {
             let row = self.first_of_places + k - 1;
             let away = inward(&at.nodes[k] - &at.saddle);
-            let (normal, gap) = match &allowed[k] {
+            let (normal, gap) = match place {
                 Place::Across { normal, through } => {
                     let gap = normal.dot(&(&away - inward(through.clone())));
                     (normal.clone(), gap)

@@ -1,5 +1,6 @@
 //! Homoclinic orbits as a curve that can be followed in the plane of both parameters.
 
+use super::begin::LONGER;
 use super::codimension_two::{Ends, Test};
 use super::connection::{Condition, Frame, Layout, Place, Solved, Solver};
 use super::saddle::Kind;
@@ -15,6 +16,8 @@ pub(super) struct HomoclinicPoint {
     /// The same with its nodes in the places of the point that it was found from.
     arrived: Vector,
     places: Vec<Place>,
+    /// The durations of its arcs where its nodes were chosen.
+    chosen: Vec<f64>,
     ends: Ends,
     /// What the curve may be off by across itself, in units of the ranges.
     pub off: f64,
@@ -81,12 +84,17 @@ impl Solver<'_> {
         let solved = Solved { linear, ..solved };
         let tangent = solved.linear.tangent(layout, &arrived)?;
         let (adjoint, slopes) = solved.linear.adjoint(layout, &tangent)?;
+        let chosen = match before {
+            Some(before) if before.layout().arcs == layout.arcs => before.chosen.clone(),
+            _ => solved.connection.durations.clone(),
+        };
         let errors = adjoint.iter().zip(&solved.linear.errors);
         let off: f64 = errors.map(|(y, error)| y.abs() * error).sum();
         let frame = &self.frame;
         Some(HomoclinicPoint {
             ends: Ends::new(&solved, &frame.sizes, &adjoint, before.map(|one| &one.ends)),
             places,
+            chosen,
             off: off / slopes[0].hypot(slopes[1]),
             tangent,
             arrived,
@@ -203,7 +211,11 @@ impl HomoclinicCurve<'_, '_> {
         let mut pairs = sizes.iter().zip(&self.solver.frame.sizes);
         let resized = pairs.any(|(a, b)| !(b / RESIZED..=b * RESIZED).contains(a));
         let mut growths = point.solved.linear.growths.iter();
-        resized || growths.any(|growth| *growth > GROWN)
+        let durations = &point.solved.connection.durations;
+        let mut longer = durations.iter().zip(&point.chosen);
+        resized
+            || growths.any(|growth| *growth > GROWN)
+            || longer.any(|(duration, chosen)| *duration > LONGER * chosen)
     }
 
     /// The same connection over other nodes.
@@ -211,7 +223,7 @@ impl HomoclinicCurve<'_, '_> {
         let old = &point.solved;
         let guess = self
             .solver
-            .spread(&old.connection, &old.linear.growths)
+            .spread(&old.connection, &old.linear.growths, &point.chosen)
             .ok()?;
         self.solver.frame.sizes = self.solver.frame.resized(&guess);
         let layout = guess.layout();
@@ -232,11 +244,13 @@ impl HomoclinicCurve<'_, '_> {
             direction[layout.parameter(i)] = along[i];
         }
         let before = Some(point);
-        let new = self.solver.point(solved.clone(), &direction, before)?;
-        match layout.of_parameters(&new.tangent, &direction) < 0.0 {
-            true => self.solver.point(solved, &-new.tangent, before),
-            false => Some(new),
+        let mut new = self.solver.point(solved, &direction, before)?;
+        if layout.of_parameters(&new.tangent, &direction) < 0.0 {
+            let turned = -&new.tangent;
+            new = self.solver.point(new.solved, &turned, before)?;
         }
+        new.chosen = new.solved.connection.durations.clone();
+        Some(new)
     }
 }
 

@@ -165,6 +165,10 @@ const MEANINGS: &[(&str, &str)] = &[
     ),
     ("regime", "steady, periodic, torus, chaotic or undecided"),
     ("returns", "number of returns that were computed"),
+    (
+        "saddle_quantity",
+        "sum of the real parts of the two eigenvalues next to the imaginary axis, one on either side of it",
+    ),
     ("slip_rate_i", "slip rate of interface or cluster i"),
     (
         "slip_rate_uncertainty_i",
