@@ -656,9 +656,9 @@ class Commands:
         ----------
         of : str, optional
             The bifurcation to follow: pitchfork, saddle-node or hopf of equilibria; orbit-
-            pitchfork, orbit-saddle-node, period-doubling or torus of periodic orbits; or orbits,
-            the periodic orbits of one period or amplitude, with ``hold``; in a scene file the key
-            `of`
+            pitchfork, orbit-saddle-node, period-doubling or torus of periodic orbits; homoclinic,
+            the orbits of infinite period; or orbits, the periodic orbits of one period or
+            amplitude, with ``hold``; in a scene file the key `of`
         ensemble : str, optional
             Propagate the uncertainty of a fit: the parameters of a law from `twinslip fit`, with
             their covariance. Numbers get a 95 % interval, yes-or-no results a probability. Implies

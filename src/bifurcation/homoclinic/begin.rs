@@ -22,9 +22,7 @@ const AGAIN: f64 = 3.0;
 const LINEAR: f64 = 0.3;
 /// ln of what arcs near the equilibrium grow by.
 const GROWTH: f64 = 4.0;
-/// Arcs that have become longer by more than this are divided.
-pub(super) const LONGER: f64 = 2.0;
-/// What is joined is no longer than this, in parts of the extent of the orbit.
+/// Arcs are no longer than this, in parts of the extent of the orbit.
 const FAR: f64 = 0.1;
 
 /// An orbit seen at many places in time.
@@ -221,43 +219,44 @@ impl Solver<'_> {
         self.point(solved, &along, None)
     }
 
-    /// The same connection over other nodes: arcs that grow much, or have become much longer than they were chosen, are divided, short ones joined.
+    /// The same connection over other nodes, evenly along its way and what arcs grow by.
     ///
     /// # Errors
     /// Those of the flow.
-    pub fn spread(
-        &mut self,
-        old: &Connection,
-        growths: &[f64],
-        chosen: &[f64],
-    ) -> Result<Connection> {
+    pub fn spread(&mut self, old: &Connection, growths: &[f64]) -> Result<Connection> {
         let field = self.family.field(old.at);
         let (mut nodes, mut durations) = (vec![old.nodes[0].clone()], Vec::new());
-        let (mut time, mut grown, mut path) = (0.0, 0.0, 0.0);
+        let (mut time, mut filled) = (0.0, 0.0);
+        let mut before = old.nodes[0].clone();
         for (k, (&duration, growth)) in old.durations.iter().zip(growths).enumerate() {
-            let growth = growth.max(0.0);
-            let longer = (duration / chosen[k] / LONGER).ceil();
-            let parts = (growth / GROWTH).ceil().max(longer).max(1.0);
-            let way = (&old.nodes[k + 1] - &old.nodes[k]).component_div(&self.frame.sizes);
-            let way = way.amax();
-            if time > 0.0 && (grown + growth > GROWTH || path + way > FAR) {
-                nodes.push(old.nodes[k].clone());
-                durations.push(time);
-                (time, grown, path) = (0.0, 0.0, 0.0);
+            let part = duration / PLACES as f64;
+            let mut passed = Vec::with_capacity(PLACES);
+            let mut places = (1..PLACES).peekable();
+            let mut see = |step: &AnyStep<'_>| {
+                while let Some(i) = places.next_if(|&i| i as f64 * part < step.t1) {
+                    passed.push(step.dense(i as f64 * part));
+                }
+                Ok(Control::Continue)
+            };
+            self.tracer
+                .flow(&field, &old.nodes[k], duration, Some(&mut see))?;
+            passed.push(old.nodes[k + 1].clone());
+            for x in passed {
+                let way = (&x - &before).component_div(&self.frame.sizes).amax();
+                time += part;
+                filled += way / FAR + growth.max(0.0) / (PLACES as f64 * GROWTH);
+                if filled >= 1.0 {
+                    nodes.push(x.clone());
+                    durations.push(time);
+                    (time, filled) = (0.0, 0.0);
+                }
+                before = x;
             }
-            let part = duration / parts;
-            let mut x = old.nodes[k].clone();
-            for _ in 1..parts as usize {
-                x = self.tracer.flow(&field, &x, part, None)?;
-                nodes.push(x.clone());
-                durations.push(part);
-            }
-            time += part;
-            path += way / parts;
-            grown += growth / parts;
         }
-        nodes.push(old.nodes[old.nodes.len() - 1].clone());
-        durations.push(time);
+        if time > 0.0 {
+            nodes.push(before);
+            durations.push(time);
+        }
         Ok(Connection {
             nodes,
             durations,

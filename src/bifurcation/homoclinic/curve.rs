@@ -1,6 +1,5 @@
 //! Homoclinic orbits as a curve that can be followed in the plane of both parameters.
 
-use super::begin::LONGER;
 use super::codimension_two::{Ends, Test};
 use super::connection::{Condition, Frame, Layout, Place, Solved, Solver};
 use super::saddle::Kind;
@@ -40,8 +39,9 @@ const OFF: f64 = 0.01;
 const COSINE: f64 = 0.9;
 /// ln of what an arc may grow by before the nodes are placed anew.
 const GROWN: f64 = 8.0;
-/// By what factor the orbit may change its size before.
+/// By what factor the orbit may change its size before, and an arc become longer.
 const RESIZED: f64 = 2.0;
+const LONGER: f64 = 2.0;
 
 impl HomoclinicPoint {
     pub fn layout(&self) -> Layout {
@@ -170,7 +170,8 @@ impl HomoclinicCurve<'_, '_> {
                     .value(point, WatchedFunction::TestFunction(test))
                     .abs()
             };
-            Test::ALL.iter().all(|&test| !(value(test) < CLEAR))
+            // Of what is not defined nothing is zero.
+            !Test::ALL.iter().any(|&test| value(test) < CLEAR)
         };
         if is_clear(self, &point) {
             return point;
@@ -223,7 +224,7 @@ impl HomoclinicCurve<'_, '_> {
         let old = &point.solved;
         let guess = self
             .solver
-            .spread(&old.connection, &old.linear.growths, &point.chosen)
+            .spread(&old.connection, &old.linear.growths)
             .ok()?;
         self.solver.frame.sizes = self.solver.frame.resized(&guess);
         let layout = guess.layout();

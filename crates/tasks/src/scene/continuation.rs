@@ -281,7 +281,7 @@ impl LocusOptions {
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct LocusOptions {
     /// The bifurcation to follow: pitchfork, saddle-node or hopf of equilibria; orbit-pitchfork, orbit-saddle-node, period-doubling or
-    /// torus of periodic orbits; or orbits, the periodic orbits of one period or amplitude, with --hold; in a scene file the key `of`
+    /// torus of periodic orbits; homoclinic, the orbits of infinite period; or orbits, the periodic orbits of one period or amplitude, with --hold; in a scene file the key `of`
     #[arg(value_name = "BIFURCATION", value_parser = Names::of(CurveChoice::NAMES), hide_possible_values = true)]
     pub of: Option<String>,
     /// What slides; both V_H and K vary and are not given.
