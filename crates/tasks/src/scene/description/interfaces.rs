@@ -197,7 +197,7 @@ impl Interfaces {
             // A single one has one steady state.
             _ => {
                 let mut curves = CurveChoice::of_system(variables, parts > 1, broken);
-                // Those of interfaces take seconds, and none are known.
+                // Those of interfaces take minutes.
                 curves.retain(|name| *name != "homoclinic");
                 curves
             }
