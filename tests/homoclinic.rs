@@ -149,6 +149,53 @@ fn saddles_and_saddle_nodes_meet_in_the_non_central_orbit() {
     is(&at(&found, "EP", Some(("phi", 0.05)), "I"), fold, 1e-11);
 }
 
+/// AUTO-07p's demo mtn, a predator and its prey (Champneys, Kuznetsov & Sandstede 1996, Int. J. Bifurcation Chaos 6, 867): both non-central orbits, between them the saddle-nodes, and a
+/// saddle, to the five or six digits of its manual.
+#[test]
+fn the_predator_and_its_prey_are_as_in_auto() {
+    let asked = "--in Z,K --range Z=0.06,0.1 --range K=4,16 --at K=9.17683";
+    let found = special(&format!("--system {FILES}/predator-prey.toml {asked}"));
+    let mut meet = at(&found, "NCH", None, "K");
+    meet.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let known = [5.18032, 6.61046, 6.61046];
+    assert_eq!(meet.len(), known.len(), "{meet:?}");
+    for ([value, off], known) in meet.iter().zip(known) {
+        assert!((value - known).abs() < 2e-5 && *off < 1e-10, "{meet:?}");
+    }
+    let at_saddle = at(&found, "UZ", Some(("K", 9.17683)), "Z");
+    assert!((at_saddle[0][0] - 7.67874e-2).abs() < 1e-7, "{at_saddle:?}");
+}
+
+/// AUTO-07p's demo cir, an electronic circuit (Freire, Rodriguez-Luis, Gamero & Ponce 1993, Physica D 62, 230): a saddle-focus that is neutral, and then a saddle. Its manual
+/// has four or five digits.
+#[test]
+fn the_circuit_is_as_in_auto() {
+    let asked = "--in nu,be --range nu=-0.78,-0.6 --range be=0.55,0.77 --at be=0.6";
+    let found = special(&format!("--system {FILES}/circuit.toml {asked}"));
+    for (label, nu, be) in [
+        ("NSF", -0.7204001, 0.5912315),
+        ("DRS", -0.7590583, 0.7428734),
+    ] {
+        let there = [at(&found, label, None, "nu"), at(&found, label, None, "be")];
+        let near = |i: usize, known: f64| (there[i][0][0] - known).abs() < 3e-5;
+        assert!(
+            there[0].len() == 1 && near(0, nu) && near(1, be),
+            "{label}: {there:?}"
+        );
+    }
+    let there = at(&found, "UZ", Some(("be", 0.6)), "nu");
+    assert!((there[0][0] + 0.7213093).abs() < 1e-7, "{there:?}");
+    let note = |label: &str| {
+        let one = found.iter().find(|point| point["label"] == label);
+        one.and_then(|point| point["note"].as_str().map(str::to_owned))
+    };
+    let says = note("UZ").expect("a note");
+    assert!(
+        says.contains("Shilnikov's condition does not hold"),
+        "{says}"
+    );
+}
+
 #[test]
 fn what_it_has_no_use_for_is_refused() {
     for option in ["--criticality", "--crosscheck rodas4"] {

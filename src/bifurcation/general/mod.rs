@@ -127,6 +127,8 @@ pub struct GeneralCurve<'a> {
     pub watch: Vec<String>,
     /// An orbit with its coordinates, where one is known.
     pub orbit: Option<ContinuationPoint>,
+    /// The orbits that a search finds at two coordinates: homoclinic orbits are looked for on their branches where there are no Hopf points.
+    pub found: Option<&'a (dyn Fn([f64; 2]) -> Vec<ContinuationPoint> + Sync)>,
     /// The coordinates of the system's own values, where it has such in the ranges: where homoclinic orbits are looked for first.
     pub own: Option<[f64; 2]>,
     /// Where curves of orbits begin, where that is known otherwise than from branches of orbits.

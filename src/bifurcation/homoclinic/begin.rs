@@ -131,7 +131,7 @@ impl Solver<'_> {
             let step = (own * time).exp();
             let mut place = &side.projection * (from - &saddle).component_div(sizes);
             let mut places = Vec::new();
-            while place.norm() > 1.5 * radius && places.len() < MOST {
+            while side.distance_of(&place).0 > 1.5 * radius && places.len() < MOST {
                 place = &step * place;
                 places.push(&saddle + place.component_mul(sizes));
             }
@@ -209,7 +209,8 @@ impl Solver<'_> {
         let guess = self.opened(orbit, 1 - held)?;
         let places = {
             let field = self.family.field(guess.at);
-            guess.places(&field, &self.frame)
+            let splitting = self.splitting(&guess.saddle, guess.at)?;
+            guess.places(&field, &self.frame, &splitting)
         };
         let condition = Condition::Parameter(held, orbit.at[held]);
         let solved = self.correct(guess, &places, &condition).ok()?;

@@ -59,8 +59,9 @@ pub(super) struct Frame {
 pub(super) enum Place {
     /// Across a direction, in units of the frame, through a point.
     Across { normal: Vector, through: Vector },
-    /// At this distance. Near the equilibrium the orbit may turn from one of its directions to another.
-    Distance(f64),
+    /// At this distance, of what leaves the equilibrium or of what comes to it. Near the equilibrium the orbit may turn from one of its directions to
+    /// another.
+    Distance { leaves: bool, distance: f64 },
 }
 
 /// A last equation.
@@ -209,18 +210,23 @@ impl Connection {
     }
 
     /// Where its nodes may move: across the flow, or near the equilibrium and where they come nearer to it or leave it, at their distance from it.
-    pub fn places(&self, field: &AnyField<'_>, frame: &Frame) -> Vec<Place> {
+    pub fn places(&self, field: &AnyField<'_>, frame: &Frame, splitting: &Splitting) -> Vec<Place> {
         /// Near is this part of the extent of the orbit; the least cosine between the flow and the way from the equilibrium.
         const NEAR: f64 = 0.1;
-        const RADIAL: f64 = 0.3;
+        const RADIAL: f64 = 0.1;
         let unit = |x: Vector| x.clone().try_normalize(0.0).unwrap_or(x);
         let place = |x: &Vector| {
             let normal = unit(field.f(x).component_div(&frame.sizes));
             let through = x - &self.saddle;
             let away = through.component_div(&frame.sizes);
-            let distance = away.norm();
-            if distance < NEAR && normal.dot(&away).abs() > RADIAL * distance {
-                return Place::Distance(distance);
+            let sides = [true, false].map(|leaves| splitting.side(leaves).distance_of(&away));
+            let leaves = sides[0].0 > sides[1].0;
+            let (distance, gradient) = &sides[usize::from(!leaves)];
+            if away.norm() < NEAR && normal.dot(gradient).abs() > RADIAL * gradient.norm() {
+                return Place::Distance {
+                    leaves,
+                    distance: *distance,
+                };
             }
             Place::Across { normal, through }
         };
@@ -336,12 +342,12 @@ impl Solver<'_> {
             errors.rows_mut(row, count).fill(off);
             row += count;
             let radius = frame.radii[usize::from(node > 0)];
-            let unit = &away / radius;
+            let (distance, unit) = own.distance_of(&away);
             rows.view_mut((row, place), (1, n))
                 .copy_from(&unit.transpose());
             rows.view_mut((row, 0), (1, n))
                 .copy_from(&-unit.transpose());
-            gaps[row] = 0.5 * (away.norm_squared() - radius.powi(2)) / radius;
+            gaps[row] = distance - radius;
             row += 1;
         }
         let first_of_places = row;
@@ -468,9 +474,9 @@ impl Linear {
                     let gap = normal.dot(&(&away - inward(through.clone())));
                     (normal.clone(), gap)
                 }
-                Place::Distance(distance) => {
-                    let gap = 0.5 * (away.norm_squared() - distance.powi(2)) / distance;
-                    (&away / *distance, gap)
+                Place::Distance { leaves, distance } => {
+                    let (here, gradient) = self.splitting.side(*leaves).distance_of(&away);
+                    (gradient, here - distance)
                 }
             };
             self.rows.row_mut(row).fill(0.0);

@@ -76,7 +76,9 @@ impl Solver<'_> {
         let arrived = solved.linear.tangent(layout, along)?;
         let places = {
             let field = self.family.field(solved.connection.at);
-            solved.connection.places(&field, &self.frame)
+            solved
+                .connection
+                .places(&field, &self.frame, &solved.linear.splitting)
         };
         let linear = solved
             .linear
@@ -144,7 +146,8 @@ impl NonCentral {
             guess = solver.extended(guess, &splitting, [false, true]);
         }
         let field = solver.family.field(guess.at);
-        let places = guess.places(&field, &solver.frame);
+        let splitting = solver.splitting(&guess.saddle, guess.at)?;
+        let places = guess.places(&field, &solver.frame, &splitting);
         drop(field);
         let solved = solver.correct(guess, &places, &Condition::None).ok()?;
         let mut ways = (0..2).map(|i| (solved.connection.at[i] - old.at[i]) / before.widths[i]);
@@ -229,7 +232,8 @@ impl HomoclinicCurve<'_, '_> {
         self.solver.frame.sizes = self.solver.frame.resized(&guess);
         let layout = guess.layout();
         let field = self.solver.family.field(guess.at);
-        let places = guess.places(&field, &self.solver.frame);
+        let splitting = self.solver.splitting(&guess.saddle, guess.at)?;
+        let places = guess.places(&field, &self.solver.frame, &splitting);
         drop(field);
         // The parameter that varies more along the curve is where it was.
         let from = point.layout();

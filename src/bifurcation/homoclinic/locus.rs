@@ -9,8 +9,8 @@ use crate::bifurcation::Label;
 use crate::bifurcation::equilibria::generic_curve::EquilibriumBifurcation;
 use crate::bifurcation::general::curves::{in_order, looked_along, scanned};
 use crate::bifurcation::general::{
-    GeneralBranch, GeneralCurve, GeneralEvent, GeneralObserver, GeneralPoint, GeneralSolution,
-    SAME, Teller, equilibrium_curves, orbits,
+    FoundOrbits, GeneralBranch, GeneralCurve, GeneralEvent, GeneralObserver, GeneralPoint,
+    GeneralSolution, SAME, Teller, equilibrium_curves, orbits,
 };
 use crate::continuation::{Continuation, Met, Stop, WatchedFunction};
 use crate::error::Result;
@@ -74,7 +74,15 @@ impl HomoclinicCurves<'_, '_> {
         looked_along(self.curve, along, held, |branch| {
             let given = self.curve.orbit.clone();
             let given = given.filter(|orbit| orbit.at[1 - along] == held);
+            let searched = |coordinate: f64| {
+                let at = in_order(along, [coordinate, held]);
+                self.curve.found.map_or_else(Vec::new, |found| found(at))
+            };
             let branch = GeneralBranch {
+                found: self.curve.found.map(|_| FoundOrbits {
+                    at: &searched,
+                    within: self.curve.own.map(|own| own[along]),
+                }),
                 orbit: given.map(|orbit| ContinuationPoint {
                     at: in_order(along, orbit.at),
                     ..orbit
@@ -192,6 +200,7 @@ impl HomoclinicCurves<'_, '_> {
             );
         }
         let step = curve.following.step;
+        let first_rate = first.solved.linear.splitting.fastest();
         let mut last = first.clone();
         let mut continuation = Continuation::new(HomoclinicCurve { solver, step }, first);
         let most = curve.following.max_points;
@@ -200,6 +209,14 @@ impl HomoclinicCurves<'_, '_> {
                 Met::Point(at) => {
                     last = at.clone();
                     if let Some(end) = self.double_zero(at, number) {
+                        seen(end, true)?;
+                        return Break(());
+                    }
+                    if let Some(why) = at.solved.linear.splitting.degenerates(first_rate) {
+                        let end = GeneralPoint {
+                            note: Some(why.to_owned()),
+                            ..self.told(at, number, Some(Label::Mx), None)
+                        };
                         seen(end, true)?;
                         return Break(());
                     }

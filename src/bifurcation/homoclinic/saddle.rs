@@ -38,6 +38,8 @@ pub(super) struct Side {
     pub across: Matrix,
     /// The least and the largest absolute real part of its eigenvalues that are not 0.
     pub rates: [f64; 2],
+    /// The square of a distance, y^T Q y, that grows or shrinks all along orbits on it, whatever turns they take; of its largest part 1.
+    pub distance: Matrix,
 }
 
 /// An equilibrium is hyperbolic where no eigenvalue is nearer to the axis than this part of the largest.
@@ -85,6 +87,38 @@ impl Splitting {
             kind,
             matrix,
         })
+    }
+
+    /// The larger one of the leading rates of both sides.
+    pub fn fastest(&self) -> f64 {
+        self.stable.rates[0].max(self.unstable.rates[0])
+    }
+
+    /// Why the orbit can't be followed much farther: it turns about the equilibrium without end, or the equilibrium has two eigenvalues 0. The latter is
+    /// told by the leading rates, beside this one somewhere else on the curve.
+    pub fn degenerates(&self, fastest: f64) -> Option<&'static str> {
+        /// The real part beside the imaginary part, and rates beside those elsewhere.
+        const NEAR: f64 = 0.05;
+        const SLOW: f64 = 0.02;
+        let near = |sign: f64| {
+            let own = self.of_side(sign);
+            own.first().is_some_and(|z| z.re.abs() < NEAR * z.im.abs())
+        };
+        if near(1.0) || near(-1.0) {
+            return Some(
+                "a pair of eigenvalues comes to the imaginary axis: a Shilnikov-Hopf point is near",
+            );
+        }
+        let slow = self.kind == Kind::Saddle && self.fastest() < SLOW * fastest;
+        slow.then_some("two eigenvalues come to 0: a Bogdanov-Takens point is near")
+    }
+
+    /// What leaves the equilibrium, or what comes to it.
+    pub fn side(&self, leaves: bool) -> &Side {
+        match leaves {
+            true => &self.unstable,
+            false => &self.stable,
+        }
     }
 
     /// The eigenvalues of one side, those nearest to the axis first.
@@ -170,11 +204,44 @@ impl Side {
         let mut order: Vec<usize> = (0..n).collect();
         order.sort_by(|&i, &j| rows.singular_values[j].total_cmp(&rows.singular_values[i]));
         let all = rows.v_t?;
+        // A direction of eigenvalue 0 is slower than any other: there the distance is the plain one.
+        let distance = match shift > 0.0 {
+            true => identity,
+            false => distance(matrix, &projection, sign, &rates)?,
+        };
         Some(Side {
+            distance,
             across: Matrix::from_fn(n - count, n, |i, j| all[(order[i], j)]),
             projection,
             rates,
         })
+    }
+}
+
+/// The integral of |exp(-s A t) y|^2 over all times, for y projected on the side of sign s, of largest part 1: the sum over short steps, doubled again and again.
+fn distance(matrix: &Matrix, projection: &Matrix, sign: f64, rates: &[f64; 2]) -> Option<Matrix> {
+    /// A step, in units of the fastest rate, and the times of the slowest one after which nothing is left.
+    const SHORT: f64 = 0.1;
+    const LEFT: f64 = 20.0;
+    let step = SHORT / matrix.norm();
+    let mut flow = (matrix * (-sign * step)).exp() * projection;
+    let mut sum = projection.transpose() * projection;
+    let mut time = step;
+    while time < LEFT / rates[0] {
+        sum += flow.transpose() * &sum * &flow;
+        flow = &flow * &flow;
+        time *= 2.0;
+    }
+    let most = sum.norm();
+    (most.is_finite() && most > 0.0).then(|| sum / most)
+}
+
+impl Side {
+    /// The distance of this, and its gradient.
+    pub fn distance_of(&self, away: &Vector) -> (f64, Vector) {
+        let gradient = &self.distance * away;
+        let distance = away.dot(&gradient).max(0.0).sqrt();
+        (distance, gradient / distance)
     }
 }
 

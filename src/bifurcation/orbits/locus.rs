@@ -228,6 +228,7 @@ impl LocusRequest {
                 watch: self.watch.iter().map(|one| one.text.clone()).collect(),
                 orbit: None,
                 own: None,
+                found: None,
                 seeds: Some(seeds),
                 symmetry: self.symmetry,
                 criticality: match self.criticality {

@@ -336,6 +336,12 @@ impl<'s> GeneralLocusPlan<'s> {
                 }
             }
         }
+        let orbits_at = |at: [f64; 2]| {
+            let values = family.parameters(at);
+            let value = |i: usize| self.free[i].asked(at[i]).unwrap_or(values[i]);
+            self.subject
+                .orbits(&[(names[0], value(0)), (names[1], value(1))])
+        };
         let interchangeable = self.subject.interchangeable();
         let bounds = self.subject.bounds();
         let curve = GeneralCurve {
@@ -355,6 +361,7 @@ impl<'s> GeneralLocusPlan<'s> {
             watch: self.watched.texts.clone(),
             orbit,
             own: own_place,
+            found: self.kind.homoclinic.then_some(&orbits_at),
             seeds: None,
             symmetry: None,
             criticality: match self.criticality {
