@@ -93,6 +93,9 @@ class Stage:
         if file.is_relative_to(DOCS):
             return self.place / file.relative_to(DOCS)
         to = self.place / "repository" / file.relative_to(ROOT)
+        # A README becomes the index of its folder, whatever links to it say.
+        if to.name == "README.md":
+            to = to.with_name("index.md")
         if not to.exists():
             to.parent.mkdir(parents=True, exist_ok=True)
             if file.suffix == ".md":
