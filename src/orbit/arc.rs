@@ -325,6 +325,31 @@ impl Tracer {
         Ok((sum, off))
     }
 
+    /// The states at the begins of so many equal parts of an arc.
+    ///
+    /// # Errors
+    /// Those of [`AnyIntegrator::flow`].
+    pub(crate) fn seen(
+        &mut self,
+        field: &AnyField<'_>,
+        start: &Vector,
+        duration: f64,
+        parts: usize,
+    ) -> Result<Vec<Vector>> {
+        let mut seen = Vec::with_capacity(parts);
+        let mut times = (0..parts)
+            .map(|i| i as f64 / parts as f64 * duration)
+            .peekable();
+        let mut see = |step: &AnyStep<'_>| {
+            while let Some(time) = times.next_if(|&time| time < step.t1) {
+                seen.push(step.dense(time));
+            }
+            Ok(Control::Continue)
+        };
+        self.flow(field, start, duration, Some(&mut see))?;
+        Ok(seen)
+    }
+
     /// The flow alone.
     ///
     /// # Errors

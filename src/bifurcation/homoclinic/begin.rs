@@ -1,11 +1,12 @@
 //! A connection from a periodic orbit that passes near a saddle.
 
-use super::connection::{Condition, Connection, Frame, Solver, extents};
+use super::connection::{Connection, Fold, Frame, Place, extents};
 use super::curve::HomoclinicPoint;
-use super::saddle::{Kind, Side, Singular, Splitting};
+use super::linear::{Condition, Solver};
+use super::saddle::{Kind, Side, Splitting};
 use crate::error::Result;
 use crate::field::{Matrix, Vector};
-use crate::integrate::{AnyField, AnyStep, Control};
+use crate::integrate::AnyField;
 use crate::orbit::{ContinuationPoint, ShootingNodes, Tracer, method_for};
 
 /// What the orbit is looked at with, and how many steps it may take in an arc and in all.
@@ -107,11 +108,16 @@ impl Solver<'_> {
 
     /// The linearisation at an equilibrium.
     pub fn splitting(&self, saddle: &Vector, at: [f64; 2]) -> Option<Splitting> {
-        let sizes = &self.frame.sizes;
-        let n = sizes.len();
         let jacobian = self.family.field(at).jacobian(saddle);
-        let scaled = Matrix::from_fn(n, n, |i, j| jacobian[(i, j)] * sizes[j] / sizes[i]);
+        let scaled = self.frame.scaled(&jacobian);
         Splitting::new(scaled, self.frame.kind)
+    }
+
+    /// Where the nodes of a connection may move.
+    pub fn places(&self, of: &Connection) -> Option<Vec<Place>> {
+        let splitting = self.splitting(&of.saddle, of.at)?;
+        let field = self.family.field(of.at);
+        Some(of.places(&field, &self.frame, &splitting))
     }
 
     /// With more nodes at its begin and at its end, by the linearised flow, to where it is as near the equilibrium as the frame says.
@@ -173,27 +179,16 @@ impl Solver<'_> {
         for _ in 0..ITERATIONS {
             let field = self.family.field(*at);
             let scale = self.family.scale(*at)[along] * self.frame.widths[along];
-            let jacobian = field.jacobian(&x);
-            let scaled = Matrix::from_fn(n, n, |i, j| jacobian[(i, j)] * sizes[j] / sizes[i]);
-            let singular = Singular::of(&scaled)?;
-            let right = singular.right.component_mul(sizes);
+            let scaled = self.frame.scaled(&field.jacobian(&x));
+            let fold = Fold::of(&field, &x, &scaled, &self.frame)?;
+            let slope = field.parameter_derivative(&x, parameter);
             let mut all = scaled.resize(n + 1, n + 1, 0.0);
-            let slope = field
-                .parameter_derivative(&x, parameter)
-                .component_div(sizes)
-                * scale;
-            all.view_mut((0, n), (n, 1)).copy_from(&slope);
-            for j in 0..n {
-                let mut unit = Vector::zeros(n);
-                unit[j] = sizes[j];
-                let bent = field
-                    .second_derivative(&x, &unit, &right)
-                    .component_div(sizes);
-                all[(n, j)] = singular.left.dot(&bent);
-            }
-            let slope = (field.parameter_jacobian(&x, parameter) * &right).component_div(sizes);
-            all[(n, n)] = singular.left.dot(&slope) * scale;
-            let missing = field.f(&x).component_div(sizes).push(singular.value);
+            all.view_mut((0, n), (n, 1))
+                .copy_from(&(slope.component_div(sizes) * scale));
+            all.view_mut((n, 0), (1, n))
+                .copy_from(&fold.in_states.transpose());
+            all[(n, n)] = fold.in_parameter(&field, &x, parameter, &self.frame) * scale;
+            let missing = field.f(&x).component_div(sizes).push(fold.value);
             let by = all.lu().solve(&-missing)?;
             x += by.rows(0, n).component_mul(sizes);
             at[along] += by[n] * self.frame.widths[along];
@@ -207,11 +202,7 @@ impl Solver<'_> {
     /// The homoclinic orbit near an orbit, at the value of one of its parameters, in the direction in which that grows; `None` where there is none.
     pub fn first(&mut self, orbit: &ContinuationPoint, held: usize) -> Option<HomoclinicPoint> {
         let guess = self.opened(orbit, 1 - held)?;
-        let places = {
-            let field = self.family.field(guess.at);
-            let splitting = self.splitting(&guess.saddle, guess.at)?;
-            guess.places(&field, &self.frame, &splitting)
-        };
+        let places = self.places(&guess)?;
         let condition = Condition::Parameter(held, orbit.at[held]);
         let solved = self.correct(guess, &places, &condition).ok()?;
         let layout = solved.connection.layout();
@@ -231,18 +222,9 @@ impl Solver<'_> {
         let mut before = old.nodes[0].clone();
         for (k, (&duration, growth)) in old.durations.iter().zip(growths).enumerate() {
             let part = duration / PLACES as f64;
-            let mut passed = Vec::with_capacity(PLACES);
-            let mut places = (1..PLACES).peekable();
-            let mut see = |step: &AnyStep<'_>| {
-                while let Some(i) = places.next_if(|&i| i as f64 * part < step.t1) {
-                    passed.push(step.dense(i as f64 * part));
-                }
-                Ok(Control::Continue)
-            };
-            self.tracer
-                .flow(&field, &old.nodes[k], duration, Some(&mut see))?;
-            passed.push(old.nodes[k + 1].clone());
-            for x in passed {
+            let seen = self.tracer.seen(&field, &old.nodes[k], duration, PLACES)?;
+            let next = old.nodes[k + 1].clone();
+            for x in seen.into_iter().skip(1).chain([next]) {
                 let way = (&x - &before).component_div(&self.frame.sizes).amax();
                 time += part;
                 filled += way / FAR + growth.max(0.0) / (PLACES as f64 * GROWTH);
@@ -293,19 +275,12 @@ fn seen(field: &AnyField<'_>, orbit: &ShootingNodes) -> Option<(Vec<Seen>, f64)>
     let mut seen = Vec::with_capacity(PLACES * orbit.nodes.len());
     let mut begun = 0.0;
     for (node, &duration) in orbit.nodes.iter().zip(&orbit.durations) {
-        let time = |i: usize| i as f64 / PLACES as f64 * duration;
-        let mut places = (0..PLACES).peekable();
-        let mut see = |step: &AnyStep<'_>| {
-            while let Some(i) = places.next_if(|&i| time(i) < step.t1) {
-                seen.push(Seen {
-                    time: begun + time(i),
-                    place: step.dense(time(i)),
-                    is_node: i == 0,
-                });
-            }
-            Ok(Control::Continue)
-        };
-        tracer.flow(field, node, duration, Some(&mut see)).ok()?;
+        let places = tracer.seen(field, node, duration, PLACES).ok()?;
+        seen.extend(places.into_iter().enumerate().map(|(i, place)| Seen {
+            time: begun + i as f64 / PLACES as f64 * duration,
+            place,
+            is_node: i == 0,
+        }));
         begun += duration;
     }
     Some((seen, begun))

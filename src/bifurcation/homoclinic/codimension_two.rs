@@ -1,6 +1,7 @@
 //! Test functions along a curve of homoclinic orbits (Champneys & Kuznetsov 1994, Int. J. Bifurcation Chaos 4, 785), as far as they can be decided.
 
-use super::connection::{Frame, Linear, Solved};
+use super::connection::Frame;
+use super::linear::{Linear, Solved};
 use super::saddle::{Kind, Splitting};
 use crate::bifurcation::Label;
 use crate::field::{Matrix, Vector};

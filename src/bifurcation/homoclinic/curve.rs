@@ -1,7 +1,8 @@
 //! Homoclinic orbits as a curve that can be followed in the plane of both parameters.
 
 use super::codimension_two::{Ends, Test};
-use super::connection::{Condition, Frame, Layout, Place, Solved, Solver};
+use super::connection::{Frame, Layout, Place};
+use super::linear::{Condition, Solved, Solver};
 use super::saddle::Kind;
 use crate::continuation::{CurveStep, SolutionCurve, StepControl, Stop, WatchedFunction};
 use crate::error::{Error, Result};
@@ -37,7 +38,7 @@ const SHORTEST: f64 = 1e-9;
 const OFF: f64 = 0.01;
 /// The least cosine between the directions before and after a step.
 const COSINE: f64 = 0.9;
-/// ln of what an arc may grow by before the nodes are placed anew.
+/// ln of what an arc may grow by before the nodes are chosen again.
 const GROWN: f64 = 8.0;
 /// By what factor the orbit may change its size before, and an arc become longer.
 const RESIZED: f64 = 2.0;
@@ -145,10 +146,7 @@ impl NonCentral {
             let splitting = solver.splitting(&guess.saddle, guess.at)?;
             guess = solver.extended(guess, &splitting, [false, true]);
         }
-        let field = solver.family.field(guess.at);
-        let splitting = solver.splitting(&guess.saddle, guess.at)?;
-        let places = guess.places(&field, &solver.frame, &splitting);
-        drop(field);
+        let places = solver.places(&guess)?;
         let solved = solver.correct(guess, &places, &Condition::None).ok()?;
         let mut ways = (0..2).map(|i| (solved.connection.at[i] - old.at[i]) / before.widths[i]);
         if ways.any(|way| way.abs() > NEAR) {
@@ -209,7 +207,7 @@ impl HomoclinicCurve<'_, '_> {
         Some(point)
     }
 
-    /// Whether its nodes or units had better be chosen anew.
+    /// Whether its nodes and units need to be chosen again.
     fn is_uneven(&self, point: &HomoclinicPoint) -> bool {
         let sizes = self.solver.frame.resized(&point.solved.connection);
         let mut pairs = sizes.iter().zip(&self.solver.frame.sizes);
@@ -231,10 +229,7 @@ impl HomoclinicCurve<'_, '_> {
             .ok()?;
         self.solver.frame.sizes = self.solver.frame.resized(&guess);
         let layout = guess.layout();
-        let field = self.solver.family.field(guess.at);
-        let splitting = self.solver.splitting(&guess.saddle, guess.at)?;
-        let places = guess.places(&field, &self.solver.frame, &splitting);
-        drop(field);
+        let places = self.solver.places(&guess)?;
         // The parameter that varies more along the curve is where it was.
         let from = point.layout();
         let along = [0, 1].map(|i| point.tangent[from.parameter(i)]);

@@ -2,8 +2,9 @@
 
 use super::begin::{ARC, WORK};
 use super::codimension_two::Test;
-use super::connection::{Frame, Solved, Solver};
+use super::connection::Frame;
 use super::curve::{HomoclinicCurve, HomoclinicPoint, NonCentral};
+use super::linear::{Solved, Solver};
 use super::saddle::Kind;
 use crate::bifurcation::Label;
 use crate::bifurcation::equilibria::generic_curve::EquilibriumBifurcation;

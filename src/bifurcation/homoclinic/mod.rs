@@ -7,6 +7,7 @@ mod begin;
 mod codimension_two;
 mod connection;
 mod curve;
+mod linear;
 mod locus;
 mod saddle;
 

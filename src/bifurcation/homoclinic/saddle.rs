@@ -133,7 +133,7 @@ impl Splitting {
         own
     }
 
-    /// What there is beside an orbit that is homoclinic to this equilibrium (Shilnikov 1970; Kuznetsov 2004, chapter 6).
+    /// Which periodic orbits exist near an orbit homoclinic to this equilibrium (Shilnikov 1970; Kuznetsov 2004, chapter 6).
     pub fn consequence(&self) -> &'static str {
         match self.kind {
             Kind::Saddle => {}

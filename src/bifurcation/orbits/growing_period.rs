@@ -12,7 +12,7 @@ use crate::bifurcation::equilibria::generic::FieldEquilibria;
 use crate::bifurcation::general::equilibria::{EquilibriumBranches, Reported};
 use crate::bifurcation::general::{FREE, GeneralBranch, GeneralPoint};
 use crate::field::Vector;
-use crate::integrate::{AnyField, AnyStep, Control};
+use crate::integrate::AnyField;
 use crate::number::{Uncertain, eigenvalues};
 use crate::orbit::{ContinuationPoint, ShootingNodes, Tracer, method_for};
 use nalgebra::Complex;
@@ -309,16 +309,7 @@ impl Passage {
         let mut tracer = Tracer::for_orbit(method, ROUGH, (ARC, WORK)).ok()?;
         let mut places = Vec::with_capacity(PLACES * orbit.nodes.len());
         for (node, &duration) in orbit.nodes.iter().zip(&orbit.durations) {
-            let mut times = (0..PLACES)
-                .map(|i| i as f64 / PLACES as f64 * duration)
-                .peekable();
-            let mut see = |step: &AnyStep<'_>| {
-                while let Some(time) = times.next_if(|&time| time < step.t1) {
-                    places.push(step.dense(time));
-                }
-                Ok(Control::Continue)
-            };
-            tracer.flow(field, node, duration, Some(&mut see)).ok()?;
+            places.extend(tracer.seen(field, node, duration, PLACES).ok()?);
         }
         let mut least = places[0].clone();
         let mut most = least.clone();
