@@ -220,7 +220,7 @@ fn zeros_of_interfaces_are_where_landings_say() {
         );
         assert!(*bound < 1e-10 * driving, "{note}: {bound}");
     }
-    // Equilibria, whose branches are closed forms.
+    // Equilibria, which without functions are followed by closed forms.
     let along = "branch equilibria --stiffness 0.14 --from 180 --to 250";
     let made = watching(
         along,

@@ -18,13 +18,6 @@ pub struct UserFunction {
     pub value: Arc<ProfileFunction>,
 }
 
-impl UserFunction {
-    /// The note of a zero.
-    pub(super) fn note(&self) -> String {
-        zero_note(&self.text)
-    }
-}
-
 /// The note of a zero of `EXPRESSION`, or of `EXPRESSION = VALUE`.
 pub(super) fn zero_note(text: &str) -> String {
     match text.contains('=') {

@@ -4,7 +4,6 @@ use super::course::{Course, Station, Step, exact_stiffness, steady_curve};
 use super::hopf::ShareHopf;
 use super::special::Teller;
 use super::stationary::{meeting, parting};
-use super::user_zeros::over_stiffness;
 use super::{ClusterOfRow, EquilibriumOfRow};
 use crate::bifurcation::{BranchRequest, BranchRow, EventObserver, Label, Parameter, Special};
 use crate::equilibrium::{
@@ -277,10 +276,6 @@ impl<'a> Run<'a> {
         let inside = |k: &f64| (from.min(to)..=from.max(to)).contains(k);
         let wanted = request.at.iter().copied().filter(inside);
         all.extend(wanted.map(|k| (k, Some(plain(Label::Uz, k)))));
-        let mut values: Vec<f64> = all.iter().map(|(k, _)| *k).collect();
-        values.sort_by(f64::total_cmp);
-        let zeros = over_stiffness(request, &one.state, &values)?;
-        all.extend(zeros.into_iter().map(|(k, special)| (k, Some(special))));
         let (curve, point) = self.place_of(one);
         for hopf in hopf_at(curve, one, &point) {
             let special = hopf.special();

@@ -152,8 +152,7 @@ impl<'a> Course<'a> {
         all.sort_by(|a, b| a.point.rate().total_cmp(&b.point.rate()));
         let wanted = self.wanted(&all, request)?;
         let hopf = self.hopf(share, request)?;
-        let zeros = self.user_zeros(share, (low, high), request)?;
-        all.extend(wanted.into_iter().chain(hopf).chain(zeros));
+        all.extend(wanted.into_iter().chain(hopf));
         all.sort_by(|a, b| a.point.rate().total_cmp(&b.point.rate()));
         Ok(all)
     }
@@ -180,11 +179,7 @@ impl<'a> Course<'a> {
     }
 
     /// Neighbours between which a number changes its sign.
-    pub(super) fn changes(
-        &self,
-        values: &[f64],
-        number: impl Fn(&SteadyPoint<'a>) -> f64,
-    ) -> Vec<Bracket> {
+    fn changes(&self, values: &[f64], number: impl Fn(&SteadyPoint<'a>) -> f64) -> Vec<Bracket> {
         let mut found = Vec::new();
         for (i, pair) in values.windows(2).enumerate() {
             let ends = [&self.points[i], &self.points[i + 1]].map(SteadyPoint::rate);

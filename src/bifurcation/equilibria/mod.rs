@@ -32,10 +32,9 @@ mod row;
 mod special;
 mod stationary;
 mod unexplained;
-mod user_zeros;
 mod vertical;
 
-use super::{BranchRequest, EventObserver, LocusKind, LocusRequest, within};
+use super::{BranchRequest, EventObserver, LocusKind, LocusRequest, UserFunction, within};
 use crate::error::{Error, Result};
 pub use cubic::{CharacteristicCubic, Tangency};
 pub(super) use hopf::hopf;
@@ -55,9 +54,21 @@ use special::Teller;
 /// whose extrema are not certain; [`Error::NotConverged`]; [`Error::TooManyPoints`]. That the observer ended it is none.
 pub fn branch(request: &BranchRequest, seen: EventObserver<'_>) -> Result<()> {
     request.checked_of_many()?;
+    watches_nothing(&request.watch)?;
     within(request.max_points, seen, |seen| {
         branch::branch(request, seen)
     })
+}
+
+/// The zeros of functions are found by [`super::general`], which follows these equilibria as those of any system.
+fn watches_nothing(watch: &[UserFunction]) -> Result<()> {
+    match watch.first() {
+        None => Ok(()),
+        Some(function) => Err(Error::Input(format!(
+            "`watch` {:?}: the closed forms of equal interfaces know of no functions; follow them as any system",
+            function.text
+        ))),
+    }
 }
 
 /// The curves of Hopf points, of folds or of branch points of equilibria of N equal interfaces within ranges of V_H and K, of every share.
@@ -69,6 +80,7 @@ pub fn branch(request: &BranchRequest, seen: EventObserver<'_>) -> Result<()> {
 /// As of [`branch()`]; [`Error::Input`] for a kind of curve that is not of equilibria, or of which one interface has none.
 pub fn locus(request: &LocusRequest, seen: EventObserver<'_>) -> Result<()> {
     request.checked_of_many()?;
+    watches_nothing(&request.watch)?;
     let request = &request.ordered();
     within(request.max_points, seen, |seen| {
         let mut teller = Teller::new(seen, request.tolerance, &request.skip);

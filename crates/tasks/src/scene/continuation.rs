@@ -192,7 +192,9 @@ impl BranchOptions {
     pub fn any_parameter(&self) -> Result<Option<SlabSubject>> {
         let along = self.along.as_deref().unwrap_or("driving");
         let system = System::new(&self.reference()?)?;
-        if system.unequal.is_none() && ["driving", "stiffness"].contains(&along) {
+        // The closed forms of equilibria tell of no other functions than their own.
+        let own_functions = self.watch.is_empty() || self.of.as_deref() == Some("orbits");
+        if system.unequal.is_none() && ["driving", "stiffness"].contains(&along) && own_functions {
             return Ok(None);
         }
         let subject = SlabSubject::new(system, &[along])?;
