@@ -11,6 +11,7 @@ import textwrap
 import threading
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -114,8 +115,12 @@ def answering() -> list[threading.Thread]:
 
 def computing() -> int:
     """The threads of this process that compute, or wait for a computation."""
-    names = (task / "comm" for task in Path("/proc/self/task").iterdir())
-    return sum(name.read_text().startswith("twinslip") for name in names if name.exists())
+    number = 0
+    for task in Path("/proc/self/task").iterdir():
+        # A thread may end between being listed and being read.
+        with suppress(FileNotFoundError, ProcessLookupError):
+            number += (task / "comm").read_text().startswith("twinslip")
+    return number
 
 
 def wait_for(come: Any) -> None:
