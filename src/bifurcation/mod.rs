@@ -67,6 +67,16 @@ pub enum Label {
     Bt,
     /// Zero-Hopf point.
     Zh,
+    /// Double Hopf point: a second pair of eigenvalues is on the imaginary axis.
+    Hh,
+    /// Orbits with the multipliers 1 and -1.
+    Ff,
+    /// Orbits with the multiplier 1 and a pair on the unit circle.
+    Fn,
+    /// Orbits with two pairs on the unit circle.
+    Nn,
+    /// Orbits with the multiplier -1 and a pair on the unit circle.
+    Pn,
     /// The largest K of a curve.
     Top,
     /// Homoclinic orbits to a neutral saddle, saddle-focus or bi-focus: the saddle quantity is zero.
@@ -101,7 +111,7 @@ pub enum Label {
 
 impl Label {
     /// All, in the order of their declaration.
-    pub const ALL: [Label; 37] = [
+    pub const ALL: [Label; 42] = [
         Label::Bp,
         Label::Lp,
         Label::Hb,
@@ -124,6 +134,11 @@ impl Label {
         Label::Cp,
         Label::Bt,
         Label::Zh,
+        Label::Hh,
+        Label::Ff,
+        Label::Fn,
+        Label::Nn,
+        Label::Pn,
         Label::Top,
         Label::Nss,
         Label::Nsf,
@@ -182,6 +197,11 @@ impl Label {
             Label::Cp => "CP",
             Label::Bt => "BT",
             Label::Zh => "ZH",
+            Label::Hh => "HH",
+            Label::Ff => "FF",
+            Label::Fn => "FN",
+            Label::Nn => "NN",
+            Label::Pn => "PN",
             Label::Top => "TOP",
             Label::Nss => "NSS",
             Label::Nsf => "NSF",
@@ -225,6 +245,11 @@ impl Label {
             Label::Cp => "cusp",
             Label::Bt => "Bogdanov-Takens",
             Label::Zh => "zero-Hopf",
+            Label::Hh => "double Hopf",
+            Label::Ff => "fold-flip",
+            Label::Fn => "fold-Neimark-Sacker",
+            Label::Nn => "double Neimark-Sacker",
+            Label::Pn => "flip-Neimark-Sacker",
             Label::Top => "largest stiffness",
             Label::Nss => "neutral saddle",
             Label::Nsf => "neutral saddle-focus",

@@ -145,6 +145,11 @@ impl<'a> AnyField<'a> {
             .second_derivative([y.as_slice(), u.as_slice(), v.as_slice()])
     }
 
+    /// The power series in s, to the fifth order, of f along a curve that is given as one. `None` for fields without such a computation.
+    pub fn series_along(&self, curve: &[Vector; 6]) -> Option<[Vector; 6]> {
+        self.0.series_along(curve)
+    }
+
     /// The names of the parameters; none where the field can't be differentiated in any.
     pub fn parameter_names(&self) -> &[&'static str] {
         self.0.parameter_names()

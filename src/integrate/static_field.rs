@@ -18,6 +18,7 @@ pub(super) trait Flows: Send + Sync {
     fn trace(&self, y: &[f64]) -> f64;
     fn newton_step(&self, y: &[f64]) -> Option<Vector>;
     fn second_derivative(&self, y_u_v: [&[f64]; 3]) -> Vector;
+    fn series_along(&self, curve: &[Vector; 6]) -> Option<[Vector; 6]>;
     fn parameter_names(&self) -> &[&'static str];
     fn parameter_derivative(&self, y: &[f64], place: usize) -> Vector;
     fn parameter_jacobian(&self, y: &[f64], place: usize) -> Matrix;
@@ -200,6 +201,12 @@ impl<const N: usize> Flows for Static<'_, N> {
     fn second_derivative(&self, [y, u, v]: [&[f64]; 3]) -> Vector {
         let [y, u, v] = [y, u, v].map(|x| self.state(x));
         self.vector(&self.field().second_derivative(&y, &u, &v))
+    }
+
+    fn series_along(&self, curve: &[Vector; 6]) -> Option<[Vector; 6]> {
+        let curve = curve.each_ref().map(|x| self.state(x.as_slice()));
+        let made = self.field().series_along(&curve)?;
+        Some(made.map(|x| self.vector(&x)))
     }
 
     fn parameter_names(&self) -> &[&'static str] {

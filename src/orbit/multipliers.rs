@@ -14,6 +14,8 @@ use std::f64::consts::{PI, TAU};
 
 /// Angles below this, from 0 and from pi, are those of real numbers: rounding parts two equal ones by as much.
 const REAL: f64 = 1e-9;
+/// So many multipliers may be two pairs.
+const TWO_PAIRS: usize = 4;
 /// A logarithm with a larger error is not known.
 const LOST: f64 = 0.5;
 
@@ -199,6 +201,62 @@ pub struct Products {
     pub torus: f64,
     /// The sum, no product, of the two whose product is nearest to 1: 2 cos of the angle of a pair on the unit circle.
     pub pair: f64,
+    /// The two conjugate pairs that are nearest to the unit circle, the nearest first. Not numbers where there are no two.
+    pub circle: [CirclePair; 2],
+}
+
+/// A conjugate pair of multipliers next to the unit circle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CirclePair {
+    /// 2 cos of its angle.
+    pub sum: f64,
+    /// ln of its product.
+    pub ln_product: f64,
+    /// As [`Products::torus`], without this pair.
+    pub others: f64,
+}
+
+impl CirclePair {
+    const NONE: Self = CirclePair {
+        sum: f64::NAN,
+        ln_product: f64::NAN,
+        others: f64::NAN,
+    };
+
+    /// The two pairs nearest to the circle, by all products of two multipliers and their places.
+    fn nearest(
+        all: &[LogEigenvalue],
+        products: &[((usize, usize), LogEigenvalue)],
+    ) -> [CirclePair; 2] {
+        let mut found = [CirclePair::NONE; 2];
+        let upper = all.iter().enumerate().filter(|(_, one)| one.arg > 0.0);
+        let mut pairs: Vec<(usize, usize)> = upper
+            .filter_map(|(i, one)| {
+                let off =
+                    |j: &usize| (all[*j].ln_abs - one.ln_abs).abs() + (all[*j].arg + one.arg).abs();
+                let lower = (0..all.len()).filter(|&j| all[j].arg < 0.0);
+                let j = lower.min_by(|a, b| off(a).total_cmp(&off(b)))?;
+                Some((i.max(j), i.min(j)))
+            })
+            .collect();
+        let ln_product = |&(i, j): &(usize, usize)| all[i].ln_abs + all[j].ln_abs;
+        pairs.sort_by(|a, b| ln_product(a).abs().total_cmp(&ln_product(b).abs()));
+        for (one, place) in found.iter_mut().zip(&pairs) {
+            let others = products.iter().filter(|(other, _)| other != place);
+            *one = CirclePair {
+                sum: 2.0 * all[place.0].arg.cos(),
+                ln_product: ln_product(place),
+                others: product(others.map(|(_, product)| *product)),
+            };
+        }
+        found
+    }
+
+    /// Of some pairs the place of the one whose sum is nearest to a value.
+    pub(super) fn place_near(pairs: &[CirclePair; 2], sum: f64) -> usize {
+        let off = |one: &CirclePair| (one.sum - sum).abs();
+        usize::from(off(&pairs[1]) < off(&pairs[0]))
+    }
 }
 
 impl Products {
@@ -206,11 +264,19 @@ impl Products {
     pub(super) fn new(maps: &[Matrix]) -> Option<Self> {
         let all = eigenvalues_of(maps)?;
         let pairs = all.iter().enumerate().flat_map(|(i, a)| {
-            all[..i].iter().map(|b| LogEigenvalue {
-                ln_abs: a.ln_abs + b.ln_abs,
-                arg: a.arg + b.arg,
+            all[..i].iter().enumerate().map(move |(j, b)| {
+                let product = LogEigenvalue {
+                    ln_abs: a.ln_abs + b.ln_abs,
+                    arg: a.arg + b.arg,
+                };
+                ((i, j), product)
             })
         });
+        let pairs: Vec<_> = pairs.collect();
+        let circle = match all.len() < TWO_PAIRS {
+            true => [CirclePair::NONE; 2],
+            false => CirclePair::nearest(&all, &pairs),
+        };
         let negative = all.iter().map(|one| LogEigenvalue {
             arg: one.arg + PI,
             ..*one
@@ -218,18 +284,27 @@ impl Products {
         Some(Products {
             fold: product(all.iter().copied()),
             doubling: product(negative),
-            torus: product(pairs),
+            torus: product(pairs.into_iter().map(|(_, product)| product)),
             pair: unit_pair(&all)?.sum,
+            circle,
         })
     }
 
-    /// Less others.
+    /// Less others, of whose pairs each has its own.
     pub(super) fn less(&self, other: &Self) -> Self {
         Products {
             fold: self.fold - other.fold,
             doubling: self.doubling - other.doubling,
             torus: self.torus - other.torus,
             pair: self.pair - other.pair,
+            circle: other.circle.map(|pair| {
+                let own = self.circle[CirclePair::place_near(&self.circle, pair.sum)];
+                CirclePair {
+                    sum: own.sum - pair.sum,
+                    ln_product: own.ln_product - pair.ln_product,
+                    others: own.others - pair.others,
+                }
+            }),
         }
     }
 
@@ -240,6 +315,11 @@ impl Products {
             doubling: x * self.doubling,
             torus: x * self.torus,
             pair: x * self.pair,
+            circle: self.circle.map(|pair| CirclePair {
+                sum: x * pair.sum,
+                ln_product: x * pair.ln_product,
+                others: x * pair.others,
+            }),
         }
     }
 }

@@ -111,6 +111,44 @@ impl PalcSettings {
         }
     }
 
+    /// Of a curve of torus bifurcations on which a second pair may come to the unit circle: by the pair that is on it at an orbit, or that goes on from there.
+    pub(crate) fn with_pair(mut self, here: &Regular) -> Self {
+        self.take_pair(here);
+        self
+    }
+
+    /// Where pairs become real, at the resonances 1:1 and 1:2, none is followed.
+    fn take_pair(&mut self, here: &Regular) {
+        let spectrum = &here.spectrum;
+        let sum = match self.condition {
+            Some(WatchedFunction::TestFunction(TestFunction::Torus)) => spectrum.two_pairs(None),
+            Some(WatchedFunction::TestFunction(TestFunction::Pair(last))) => {
+                spectrum.two_pairs(Some(last))
+            }
+            _ => return,
+        };
+        let condition = sum.map_or(TestFunction::Torus, |[own, _]| TestFunction::Pair(own));
+        self.condition = Some(WatchedFunction::TestFunction(condition));
+    }
+
+    /// What is zero, along this curve, where something that is watched is zero near an orbit; `None` where there can be none.
+    pub(crate) fn meaning(
+        &self,
+        watch: WatchedFunction,
+        near: &Regular,
+    ) -> Option<WatchedFunction> {
+        match (watch, self.condition) {
+            (
+                WatchedFunction::TestFunction(TestFunction::SecondPair),
+                Some(WatchedFunction::TestFunction(TestFunction::Pair(own))),
+            ) => {
+                let [_, second] = near.spectrum.two_pairs(Some(own))?;
+                Some(WatchedFunction::TestFunction(TestFunction::Pair(second)))
+            }
+            _ => Some(watch),
+        }
+    }
+
     /// The curve's own conditions: none on a branch.
     pub(crate) fn own<'a>(&self) -> Vec<Condition<'a>> {
         let own = self.condition.map(WatchedFunction::condition);
@@ -302,6 +340,7 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
 
     /// With the orbit's arcs cut anew where they have become uneven.
     fn taken(&mut self, to: &DirectedPoint) -> Result<Option<DirectedPoint>, Stop> {
+        self.settings.take_pair(&to.here);
         if !self.is_uneven(&to.here) {
             return Ok(None);
         }
@@ -383,7 +422,8 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
         near: &DirectedPoint,
         watch: WatchedFunction,
     ) -> Option<(f64, DirectedPoint)> {
-        let conditions = self.settings.and(watch.condition());
+        let meaning = self.settings.meaning(watch, &near.here)?;
+        let conditions = self.settings.and(meaning.condition());
         let site = near.here.site.clone();
         let found = self.corrected(&near.here, site, &conditions);
         let here = found.ok()?;

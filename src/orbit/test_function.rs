@@ -9,7 +9,7 @@
 //! is the sum of the pair that is nearest to the unit circle.
 
 use super::linear::Linear;
-use super::multipliers::Products;
+use super::multipliers::{CirclePair, Products};
 use crate::error::{Error, Result};
 use crate::field::Matrix;
 
@@ -27,6 +27,12 @@ pub enum TestFunction {
     Trace(f64),
     /// The multiplier across the symmetric subspace is 1.
     Transverse,
+    /// The product of a conjugate pair is 1: of both that are nearest to the unit circle the one for which 2 cos of the angle is nearest to this value. Unlike
+    /// [`TestFunction::Torus`] it has a simple zero where a second pair is on the circle.
+    Pair(f64),
+    /// The product of two is 1, but those of the conjugate pair that is nearest to the unit circle: along a curve of torus bifurcations a second pair comes to
+    /// the circle, or two real ones have the product 1.
+    SecondPair,
 }
 
 /// What the test functions are made of, or its change.
@@ -94,6 +100,25 @@ impl Spectrum {
             across: (there.across - spectrum.across) / step,
             products: products.map(|(here, there)| there.less(&here).scaled(1.0 / step)),
         }
+    }
+
+    /// 2 cos of the angles of the two conjugate pairs nearest to the unit circle, where both are near it and certainly not real: first of the one for which that
+    /// is nearest to a value, or else of the one that is nearest to the circle.
+    pub(crate) fn two_pairs(&self, first: Option<f64>) -> Option<[f64; 2]> {
+        /// Of ln of a product.
+        const NEAR: f64 = 4.0;
+        const REAL: f64 = 1.9;
+        let pairs = self.products?.circle;
+        let own = first.map_or(0, |sum| CirclePair::place_near(&pairs, sum));
+        let near = |one: &CirclePair| one.ln_product.abs() < NEAR && one.sum.abs() < REAL;
+        let sums = [pairs[own].sum, pairs[1 - own].sum];
+        pairs.iter().all(near).then_some(sums)
+    }
+
+    /// ln of the products of both conjugate pairs that are nearest to the unit circle.
+    pub(crate) fn pairs_off(&self) -> Option<[f64; 2]> {
+        let off = self.products?.circle.map(|pair| pair.ln_product);
+        off.iter().all(|off| off.is_finite()).then_some(off)
     }
 
     /// ln |mu| of both nontrivial multipliers, the larger one first, of an orbit in three dimensions.
@@ -179,6 +204,11 @@ impl TestFunction {
                 "2",
                 dimension == 2,
             ),
+            TestFunction::Pair(_) | TestFunction::SecondPair => (
+                "the test functions of two pairs of multipliers",
+                "5 or more",
+                dimension >= 5,
+            ),
         };
         Error::dimension_unless(holds, what, known, dimension)
     }
@@ -204,6 +234,19 @@ impl TestFunction {
             TestFunction::Torus => volume,
             TestFunction::Trace(value) => trace - value,
             TestFunction::Transverse => across,
+            TestFunction::Pair(_) | TestFunction::SecondPair => {
+                products.map_or(f64::NAN, |all| self.of_pair(&all, &all))
+            }
+        }
+    }
+
+    /// That of a pair, which the first products tell, in the second ones.
+    fn of_pair(self, at: &Products, of: &Products) -> f64 {
+        match self {
+            TestFunction::Pair(sum) => {
+                of.circle[CirclePair::place_near(&at.circle, sum)].ln_product
+            }
+            _ => of.circle[0].others,
         }
     }
 
@@ -223,6 +266,10 @@ impl TestFunction {
         if at.dimension > 3 {
             // All are linear in the products.
             return match self {
+                TestFunction::Pair(_) | TestFunction::SecondPair => {
+                    let both = at.products.zip(by.products);
+                    both.map_or(f64::NAN, |(at, by)| self.of_pair(&at, &by))
+                }
                 TestFunction::Trace(_) => TestFunction::Trace(0.0).of(by),
                 _ => self.of(by),
             };
@@ -235,6 +282,7 @@ impl TestFunction {
             TestFunction::Torus => by.volume,
             TestFunction::Trace(_) => by.trace,
             TestFunction::Transverse => by.across,
+            TestFunction::Pair(_) | TestFunction::SecondPair => f64::NAN,
         }
     }
 }

@@ -84,6 +84,11 @@ pub trait VectorField<const N: usize>: Send + Sync {
     /// D2f(y)[u, v], the second derivative applied to two directions; symmetric in u and v.
     fn second_derivative(&self, y: &State<N>, u: &State<N>, v: &State<N>) -> State<N>;
 
+    /// The power series in s, to the fifth order, of f along a curve that is given as one. `None` for fields without such a computation.
+    fn series_along(&self, _curve: &[State<N>; 6]) -> Option<[State<N>; 6]> {
+        None
+    }
+
     /// Computes f(y) and J(y) in 31 digits, which avoids cancellation in double precision. `None` for fields without such a computation.
     fn exact(&self, _y: &State<N>) -> Option<ExactField<N>> {
         None

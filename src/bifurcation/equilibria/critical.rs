@@ -37,15 +37,62 @@ pub(super) fn least_of(matrix: &Matrix) -> f64 {
 pub(super) fn sum_function(jacobian: &Matrix) -> f64 {
     match is_large(jacobian.nrows()) {
         false => bialternate(jacobian).determinant(),
-        true => nearest_sum(jacobian).unwrap_or(f64::NAN),
+        true => nearest_sum(jacobian, None).map_or(f64::NAN, |found| found.over_largest()),
     }
 }
 
-/// The sum of two eigenvalues itself, or what is zero with it.
-pub(super) fn pair_function(jacobian: &Matrix) -> f64 {
-    match is_large(jacobian.nrows()) {
+/// The same without the pair that is followed: zero where a second pair comes to the imaginary axis.
+pub(super) fn other_sums(jacobian: &Matrix, pair: FollowedPair) -> f64 {
+    nearest_sum(jacobian, Some(pair)).map_or(f64::NAN, |found| found.over_largest())
+}
+
+/// omega of a second pair that is on the imaginary axis with one that is followed.
+pub(super) fn second_frequency(jacobian: &Matrix, pair: FollowedPair) -> Option<f64> {
+    /// What is left of the real part, over the imaginary one.
+    const AXIS: f64 = 1e-6;
+    let (a, _) = nearest_sum(jacobian, Some(pair))?.of;
+    (a.re.abs() < AXIS * a.im.abs()).then_some(a.im.abs())
+}
+
+/// The sum of two eigenvalues itself, or what is zero with it. Where two sums vanish together the determinant has a double zero; the sum of a pair that is
+/// followed has a simple one.
+pub(super) fn pair_function(jacobian: &Matrix, pair: Option<FollowedPair>) -> f64 {
+    match is_large(jacobian.nrows()) || pair.is_some() {
         false => bialternate(jacobian).determinant(),
-        true => pair_sum(jacobian).map_or(f64::NAN, |found| found.value),
+        true => pair_sum(jacobian, pair).map_or(f64::NAN, |found| found.value),
+    }
+}
+
+/// Two eigenvalues r and -r that a curve goes along, told by the one that is on the positive imaginary axis, or on the positive real one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct FollowedPair(Complex<f64>);
+
+impl FollowedPair {
+    /// The two eigenvalues that are next to those of another pair; without one, those whose sum is nearest to zero.
+    pub fn of(jacobian: &Matrix, other: Option<FollowedPair>) -> Option<Self> {
+        let product = pair_sum(jacobian, other)?.product;
+        let pair = FollowedPair(Complex::from(-product).sqrt());
+        (pair.0.re.is_finite() && pair.0.im.is_finite()).then_some(pair)
+    }
+
+    /// Whether another sum of two eigenvalues is next to zero, against this pair.
+    pub fn is_near_another(self, jacobian: &Matrix) -> bool {
+        const NEAR: f64 = 0.1;
+        let other = nearest_sum(jacobian, Some(self));
+        other.is_some_and(|other| other.sum.abs() < NEAR * self.0.norm())
+    }
+
+    /// In another unit of time.
+    fn over(self, unit: f64) -> Self {
+        FollowedPair(self.0 / unit)
+    }
+
+    /// How far two eigenvalues are from it. What is left of their sum tells most, but where two sums are all but zero.
+    fn distance(self, a: &Complex<f64>, b: &Complex<f64>) -> f64 {
+        /// What a sum counts.
+        const SUM: f64 = 10.0;
+        let of = |a: &Complex<f64>, b: &Complex<f64>| (a - self.0).norm() + (b + self.0).norm();
+        SUM * (a + b).norm() + of(a, b).min(of(b, a))
     }
 }
 
@@ -73,14 +120,14 @@ impl Slope {
     ///
     /// # Errors
     /// As of [`Slope::of_zero_function`].
-    pub fn of_pair_function(jacobian: &Matrix) -> Result<Self> {
-        match is_large(jacobian.nrows()) {
+    pub fn of_pair_function(jacobian: &Matrix, pair: Option<FollowedPair>) -> Result<Self> {
+        match is_large(jacobian.nrows()) || pair.is_some() {
             false => {
                 let slope = determinant_slope(&bialternate(jacobian))?;
                 let whole = move |change: &Matrix| slope(&bialternate(change));
                 Ok(Slope::Whole(Box::new(whole)))
             }
-            true => Self::by(pair_sum(jacobian)),
+            true => Self::by(pair_sum(jacobian, pair)),
         }
     }
 
@@ -128,11 +175,11 @@ fn determinant_slope(a: &Matrix) -> Result<impl Fn(&Matrix) -> f64 + use<>> {
     })
 }
 
-/// omega of the two eigenvalues whose sum is nearest to zero; `None` where these are real.
-pub(super) fn pair_frequency(jacobian: &Matrix) -> Option<f64> {
+/// omega of the two eigenvalues that are followed, or else of those whose sum is nearest to zero; `None` where these are real.
+pub(super) fn pair_frequency(jacobian: &Matrix, pair: Option<FollowedPair>) -> Option<f64> {
     /// What is left of the real part, over the imaginary one.
     const AXIS: f64 = 1e-6;
-    let found = pair_sum(jacobian)?;
+    let found = pair_sum(jacobian, pair)?;
     let half = 0.5 * found.value;
     let omega = (found.product - half * half).sqrt();
     (half.abs() < AXIS * omega).then_some(omega)
@@ -184,27 +231,60 @@ fn least_singular(jacobian: &Matrix) -> Option<Critical> {
     })
 }
 
-/// Of all sums of two eigenvalues the least in size over the largest eigenvalue, with the sign of the product of all. Sums that are not real come in conjugate
-/// pairs. `None` where eigenvalues are not found.
-fn nearest_sum(jacobian: &Matrix) -> Option<f64> {
-    let all = eigenvalues(&balanced(jacobian)?.matrix)?;
-    let (mut least, mut sign) = (f64::INFINITY, 1.0);
+/// The least sum of two eigenvalues.
+struct NearestSum {
+    /// Its size, with the sign of the product of all.
+    sum: f64,
+    /// The eigenvalues.
+    of: (Complex<f64>, Complex<f64>),
+    /// The largest eigenvalue in size.
+    largest: f64,
+}
+
+impl NearestSum {
+    fn over_largest(&self) -> f64 {
+        if self.largest > 0.0 {
+            self.sum / self.largest
+        } else {
+            0.0
+        }
+    }
+}
+
+/// Of all sums of two eigenvalues, or of all but that of a pair, the least in size. Sums that are not real come in conjugate pairs. `None` where eigenvalues
+/// are not found, or there is no sum.
+fn nearest_sum(jacobian: &Matrix, but: Option<FollowedPair>) -> Option<NearestSum> {
+    let Balanced {
+        matrix: even, size, ..
+    } = balanced(jacobian)?;
+    let all = eigenvalues(&even)?;
+    let but = match but {
+        Some(pair) => Some(places_of_pair(&all, Some(pair.over(size)))?),
+        None => None,
+    };
+    let mut least: Option<(f64, &Complex<f64>, &Complex<f64>)> = None;
+    let mut sign = 1.0;
     for (i, a) in all.iter().enumerate() {
-        for b in &all[..i] {
+        for (j, b) in all[..i].iter().enumerate() {
+            if but == Some((i, j)) {
+                continue;
+            }
             let sum = a + b;
-            least = least.min(sum.norm());
+            if least.is_none_or(|(least, ..)| sum.norm() < least) {
+                least = Some((sum.norm(), a, b));
+            }
             if is_real(a, b) && sum.re < 0.0 {
                 sign = -sign;
             }
         }
     }
+    let (least, a, b) = least?;
     let largest = all.iter().map(|z| z.norm()).fold(0.0, f64::max);
-    let value = if largest > 0.0 {
-        sign * least / largest
-    } else {
-        0.0
-    };
-    value.is_finite().then_some(value)
+    (least.is_finite() && largest.is_finite()).then(|| NearestSum {
+        sum: sign * least * size,
+        of: (a * size, b * size),
+        largest: largest * size,
+    })
 }
 
 /// Whether both are real or conjugate to each other.
@@ -243,26 +323,40 @@ fn balanced(matrix: &Matrix) -> Option<Balanced> {
     })
 }
 
-/// The real sum of two eigenvalues that is nearest to zero, with the planes that the Jacobian and its transpose map to themselves.
-fn pair_sum(jacobian: &Matrix) -> Option<Critical> {
+/// The numbers of the two eigenvalues, conjugate or both real, that are next to a pair, or else whose sum is nearest to zero.
+fn places_of_pair(all: &[Complex<f64>], pair: Option<FollowedPair>) -> Option<(usize, usize)> {
+    let places = (0..all.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
+    let real = places.filter(|&(i, j)| is_real(&all[i], &all[j]));
+    let off = |&(i, j): &(usize, usize)| match pair {
+        Some(pair) => pair.distance(&all[i], &all[j]),
+        None => (all[i] + all[j]).re.abs(),
+    };
+    real.min_by(|one, other| off(one).total_cmp(&off(other)))
+}
+
+/// The real sum of two eigenvalues that are followed, or else the one that is nearest to zero, with the planes that the Jacobian and its transpose map to
+/// themselves.
+fn pair_sum(jacobian: &Matrix, pair: Option<FollowedPair>) -> Option<Critical> {
+    /// So often the least that keeps a matrix from being singular is added.
+    const TRIED: u8 = 3;
     let Balanced {
         matrix: even,
         units,
         size,
     } = balanced(jacobian)?;
     let all = eigenvalues(&even)?;
-    let pairs = all.iter().enumerate();
-    let pairs = pairs.flat_map(|(i, a)| all[..i].iter().map(move |b| (a, b)));
-    let real = pairs.filter(|(a, b)| is_real(a, b));
-    let off = |(a, b): &(&Complex<f64>, &Complex<f64>)| (*a + *b).re.abs();
-    let (a, b) = real.min_by(|one, other| off(one).total_cmp(&off(other)))?;
+    let (i, j) = places_of_pair(&all, pair.map(|pair| pair.over(size)))?;
+    let (a, b) = (all[i], all[j]);
     let (sum, product) = ((a + b).re, (a * b).re);
     // Singular in the plane alone, but for what keeps it from being so to the last digit.
     let n = even.nrows();
     let off = f64::EPSILON * even.norm_squared();
-    let both = &even * &even - &even * sum + Matrix::identity(n, n) * (product + off);
-    let right = plane(&both)?;
-    let left = plane(&both.transpose())?;
+    let squares = &even * &even - &even * sum;
+    // Rounding may take just that away.
+    let (left, right) = (1..=TRIED).find_map(|times| {
+        let both = &squares + Matrix::identity(n, n) * (product + f64::from(times) * off);
+        Some((plane(&both.transpose())?, plane(&both)?))
+    })?;
     // Dual to each other.
     let left = &left * (left.transpose() * &right).try_inverse()?.transpose();
     let inside = left.transpose() * &even * &right;

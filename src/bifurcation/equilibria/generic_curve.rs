@@ -3,9 +3,10 @@
 //! Solved are f(y; p) = 0 and a determinant: of the Jacobian at a fold, of the bialternate product 2 J (.) 1 at a Hopf point
 //! (Kuznetsov 2004, section 10.3); of many variables what takes their place (`critical`). All derivatives are the field's own.
 
-use super::critical::{Slope, pair_function, zero_function};
+use super::critical::{FollowedPair, Slope, pair_function, zero_function};
 use super::generic_curve_observer::Observer;
 use super::generic_curve_problem::{Extended, SMALL, relative};
+use super::normal_form::NormalFormCoefficient;
 use crate::bifurcation::Label;
 use crate::continuation::{Branch, Settings, Start, follow};
 use crate::error::{Error, Result};
@@ -60,7 +61,9 @@ pub struct EquilibriumCurvePoint {
     pub frequency: Option<f64>,
     /// The first Lyapunov coefficient of a Hopf point, with <q, q> = 1: positive where the small orbits are unstable.
     pub coefficient: Option<f64>,
-    /// `CP`, `BT`, `ZH`, `GH`, `UZ`, `UF`, `EP`, where the point is one of these.
+    /// At a point of codimension two the coefficients of its normal form, where the field has series along curves.
+    pub normal_form: Vec<NormalFormCoefficient>,
+    /// `CP`, `BT`, `ZH`, `HH`, `GH`, `UZ`, `UF`, `EP`, where the point is one of these.
     pub label: Option<Label>,
     /// Where one of the user's functions is zero, its number.
     pub zero_of: Option<usize>,
@@ -105,11 +108,11 @@ pub struct SharpEquilibrium {
 }
 
 impl EquilibriumCurve<'_> {
-    /// What vanishes, as a function of the Jacobian.
-    pub(super) fn function(&self, jacobian: &Matrix) -> f64 {
+    /// What vanishes, as a function of the Jacobian; at a Hopf point by the pair that is followed, if one is.
+    pub(super) fn function(&self, jacobian: &Matrix, pair: Option<FollowedPair>) -> f64 {
         match self.kind {
             EquilibriumBifurcation::Fold => zero_function(jacobian),
-            EquilibriumBifurcation::Hopf => pair_function(jacobian),
+            EquilibriumBifurcation::Hopf => pair_function(jacobian, pair),
             EquilibriumBifurcation::Pitchfork => across(jacobian),
         }
     }
@@ -118,10 +121,10 @@ impl EquilibriumCurve<'_> {
     ///
     /// # Errors
     /// Those of [`Slope`].
-    pub(super) fn slope(&self, jacobian: &Matrix) -> Result<Slope> {
+    pub(super) fn slope(&self, jacobian: &Matrix, pair: Option<FollowedPair>) -> Result<Slope> {
         Ok(match self.kind {
             EquilibriumBifurcation::Fold => Slope::of_zero_function(jacobian)?,
-            EquilibriumBifurcation::Hopf => Slope::of_pair_function(jacobian)?,
+            EquilibriumBifurcation::Hopf => Slope::of_pair_function(jacobian, pair)?,
             EquilibriumBifurcation::Pitchfork => Slope::Whole(Box::new(across)),
         })
     }
@@ -158,7 +161,7 @@ impl EquilibriumCurve<'_> {
         const ITERATIONS: usize = 40;
         const DONE: f64 = 1e-15;
         self.checked().ok()?;
-        let (n, problem) = (self.unknowns(), Extended(self));
+        let (n, problem) = (self.unknowns(), Extended::new(self));
         let mut u = state.rows(0, n).into_owned().push(at[0]).push(at[1]);
         let mut last = f64::INFINITY;
         for _ in 0..ITERATIONS {
@@ -214,7 +217,8 @@ impl EquilibriumCurve<'_> {
         self.checked()?;
         of_dimension(state.len(), self.family.dimension())?;
         let n = self.unknowns();
-        let problem = Extended(self);
+        let problem = Extended::new(self);
+        problem.take_pair(&self.family.field(at).jacobian(state));
         let u = state.rows(0, n).into_owned().push(at[0]);
         let start = Start {
             direction: problem.direction(&u, at[1], growing)?,

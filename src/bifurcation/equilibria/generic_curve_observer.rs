@@ -1,12 +1,15 @@
 //! What is special on a curve of bifurcations of equilibria: cusps, degenerate Hopf points, double and triple eigenvalues.
 
 use super::bialternate::{CHANGE, lyapunov, lyapunov_by};
-use super::critical::{Slope, sum_function, zero_function};
+use super::critical::{
+    Slope, other_sums, pair_frequency, second_frequency, sum_function, zero_function,
+};
 use super::generic::moved_by;
 use super::generic_curve::{
     EquilibriumBifurcation, EquilibriumCurve, EquilibriumCurvePoint, FirstCoordinate,
 };
 use super::generic_curve_problem::{Extended, alike, frequency, sign};
+use super::normal_form::CodimensionTwo;
 use crate::bifurcation::Label;
 use crate::continuation::{CurveObserver, CurvePoint, PointKind};
 use crate::error::Result;
@@ -34,19 +37,21 @@ fn kernel(matrix: &Matrix, along: &Vector) -> Option<Vector> {
 }
 
 /// So many functions tell what is special on a curve.
-const FUNCTIONS: usize = 2;
+const FUNCTIONS: usize = 3;
+/// That of a second pair of Hopf points.
+const SECOND: usize = 2;
 
 impl Observer<'_, '_> {
     /// Of folds: how the determinant changes along the kernel, zero at cusps, and the product of the sums of two eigenvalues. Of
-    /// Hopf points: the first Lyapunov coefficient, and the determinant.
-    fn functions(&self, u: &Vector, tangent: &Vector) -> Result<[f64; 2]> {
+    /// Hopf points: the first Lyapunov coefficient, the determinant, and the sums of two other eigenvalues.
+    fn functions(&self, u: &Vector, tangent: &Vector) -> Result<[f64; FUNCTIONS]> {
         /// The least part of a unit tangent that tells the sign of a vector.
         const ORIENTED: f64 = 1e-6;
         let n = u.len() - 2;
         let (state, at) = (self.problem.state(u), [u[n], u[n + 1]]);
-        let field = self.problem.0.family.field(at);
+        let field = self.problem.curve.family.field(at);
         let jacobian = field.jacobian(&state);
-        Ok(match self.problem.0.kind {
+        Ok(match self.problem.curve.kind {
             EquilibriumBifurcation::Fold => {
                 let along = tangent.rows(0, n).into_owned();
                 let kernel = kernel(&jacobian, &along).unwrap_or_else(|| Vector::zeros(n));
@@ -55,30 +60,61 @@ impl Observer<'_, '_> {
                 let unknown = if oriented { 1.0 } else { f64::NAN };
                 let change = |v: &Vector| field.second_derivative(&state, &kernel, v);
                 let bends = Slope::of_zero_function(&jacobian)?.along(n, change);
-                [bends * unknown, sum_function(&jacobian)]
+                [bends * unknown, sum_function(&jacobian), f64::NAN]
             }
             EquilibriumBifurcation::Hopf => {
-                let (omega, determinant) = (frequency(&jacobian), zero_function(&jacobian));
+                let (omega, determinant) = (self.frequency(&jacobian), zero_function(&jacobian));
                 let coefficient = omega.and_then(|omega| lyapunov(&field, &state, omega));
                 // The coefficient has a pole where the determinant is zero, and another sign behind it.
                 let without_pole = coefficient.map_or(f64::NAN, |l_1| l_1 * determinant);
-                [without_pole, determinant]
+                let pair = self.problem.pair();
+                let second = pair.map_or(f64::NAN, |pair| other_sums(&jacobian, pair));
+                [without_pole, determinant, second]
             }
             // The sum and the product of both eigenvalues of what moves alike.
             EquilibriumBifurcation::Pitchfork => {
                 let alike = alike(&jacobian);
-                [alike.trace(), alike.determinant()]
+                [alike.trace(), alike.determinant(), f64::NAN]
             }
         })
+    }
+
+    /// omega of the pair that bifurcates.
+    fn frequency(&self, jacobian: &Matrix) -> Option<f64> {
+        pair_frequency(jacobian, self.problem.pair())
+    }
+
+    /// omega of a second pair that is on the imaginary axis with it.
+    fn second_frequency(&self, jacobian: &Matrix) -> Option<f64> {
+        second_frequency(jacobian, self.problem.pair()?)
+    }
+
+    /// omega of all pairs that are on the imaginary axis at a point of codimension two.
+    fn frequencies(&self, label: Label, jacobian: &Matrix) -> Vec<f64> {
+        let own = match self.problem.curve.kind {
+            EquilibriumBifurcation::Hopf => self.frequency(jacobian),
+            _ => frequency(jacobian),
+        };
+        match label {
+            // The same order on both curves that meet there.
+            Label::Hh => {
+                let both = own.into_iter().chain(self.second_frequency(jacobian));
+                let mut both: Vec<f64> = both.collect();
+                both.sort_by(f64::total_cmp);
+                both
+            }
+            Label::Gh | Label::Zh => own.into_iter().collect(),
+            _ => Vec::new(),
+        }
     }
 
     /// A user function at unknowns of the curve.
     fn user_function(&self, which: usize, u: &Vector) -> f64 {
         let n = u.len() - 2;
         let (state, at) = (self.problem.state(u), [u[n], u[n + 1]]);
-        let EquilibriumCurve { family, kind } = *self.problem.0;
+        let EquilibriumCurve { family, kind } = *self.problem.curve;
         let omega = match kind {
-            EquilibriumBifurcation::Hopf => frequency(&family.field(at).jacobian(&state)),
+            EquilibriumBifurcation::Hopf => self.frequency(&family.field(at).jacobian(&state)),
             _ => None,
         };
         let equilibrium = Solution::Equilibrium {
@@ -96,14 +132,14 @@ impl Observer<'_, '_> {
 
     /// What the differences of the first Lyapunov coefficient are off, by twice their distance.
     fn difference_error(&self, i: usize, u: &Vector) -> f64 {
-        if (self.problem.0.kind, i) != (EquilibriumBifurcation::Hopf, 0) {
+        if (self.problem.curve.kind, i) != (EquilibriumBifurcation::Hopf, 0) {
             return 0.0;
         }
         let n = u.len() - 2;
         let (state, at) = (self.problem.state(u), [u[n], u[n + 1]]);
-        let field = self.problem.0.family.field(at);
+        let field = self.problem.curve.family.field(at);
         let jacobian = field.jacobian(&state);
-        let Some(omega) = frequency(&jacobian) else {
+        let Some(omega) = self.frequency(&jacobian) else {
             return f64::INFINITY;
         };
         let by = |change: f64| lyapunov_by(&field, &state, omega, change);
@@ -143,12 +179,12 @@ impl Observer<'_, '_> {
     fn is_zero(&self, i: usize, u: &Vector, along: &Vector) -> Option<bool> {
         /// Of the tangent, which at a cusp is the kernel.
         const ALONG: f64 = 0.5;
-        if (self.problem.0.kind, i) != (EquilibriumBifurcation::Fold, 0) {
+        if (self.problem.curve.kind, i) != (EquilibriumBifurcation::Fold, 0) {
             return Some(true);
         }
         let tangent = self.problem.tangent(u, along)?;
         let n = u.len() - 2;
-        let field = self.problem.0.family.field([u[n], u[n + 1]]);
+        let field = self.problem.curve.family.field([u[n], u[n + 1]]);
         let tangent = tangent.rows(0, n).into_owned();
         let kernel = kernel(&field.jacobian(&self.problem.state(u)), &tangent)?;
         Some(kernel.dot(&tangent) > ALONG)
@@ -169,11 +205,15 @@ impl Observer<'_, '_> {
         let all = eigenvalues(jacobian)?;
         let zero = |z: &&Complex<f64>| z.norm() < DOUBLE * jacobian.amax();
         let near = all.iter().filter(zero).count();
-        match (self.problem.0.kind, i) {
+        match (self.problem.curve.kind, i) {
             (EquilibriumBifurcation::Pitchfork, 0) => frequency(jacobian).map(|_| Label::Zh),
             (EquilibriumBifurcation::Pitchfork, _) => Some(Label::Bt),
             (EquilibriumBifurcation::Fold, 0) => Some(Label::Cp),
             (EquilibriumBifurcation::Hopf, 0) => Some(Label::Gh),
+            // A neutral saddle beside the pair is nothing.
+            (EquilibriumBifurcation::Hopf, SECOND) => omega
+                .and(self.second_frequency(jacobian))
+                .map(|_| Label::Hh),
             _ if near >= 2 => Some(Label::Bt),
             (EquilibriumBifurcation::Fold, _) => frequency(jacobian).map(|_| Label::Zh),
             // On a curve of neutral saddles an eigenvalue zero is nothing.
@@ -181,15 +221,14 @@ impl Observer<'_, '_> {
         }
     }
 
-    /// The zero of the i-th function near a point of the curve, in the last digits, and how far its coordinates may be off: by the
+    /// The zero of the i-th function near a point of the curve, in the last digits, and how far all that may be off: by the
     /// curve's own rounding, and along it by what is left of the function and its noise over its slope.
-    fn sharp(&self, i: usize, point: &CurvePoint) -> Option<(Vector, [f64; 2])> {
+    fn sharp(&self, i: usize, point: &CurvePoint) -> Option<(Vector, Vector)> {
         const ITERATIONS: usize = 8;
         const BESIDE: f64 = 1e-5;
         const DONE: f64 = 1e-13;
         const TRIED: usize = 4;
         let along = &point.tangent;
-        let n = point.u.len() - 1;
         let start = point.u.push(point.lambda);
         let function = |u: &Vector, tangent: &Vector| match self.users(i) {
             Some(which) => Some(self.user_function(which, u)),
@@ -234,9 +273,9 @@ impl Observer<'_, '_> {
         let across = self.problem.budget_across(&u, &tangent)?;
         // At the origin rounding is nothing, and what is left are the steps that did not change a number of the size of the others.
         let least = f64::EPSILON * f64::EPSILON * (1.0 + start.amax());
-        let off = [0, 1].map(|k| {
-            let by_bend = bend[n + k].abs() * off_along * off_along;
-            across[n + k] + off_along * tangent[n + k].abs() + by_bend + least
+        let off = Vector::from_fn(u.len(), |k, _| {
+            let by_bend = bend[k].abs() * off_along * off_along;
+            across[k] + off_along * tangent[k].abs() + by_bend + least
         });
         let known = off.iter().all(|x| x.is_finite()) && self.is_zero(i, &u, &tangent)?;
         known.then_some((u, off))
@@ -247,9 +286,12 @@ impl CurveObserver for Observer<'_, '_> {
     fn tests(&self, point: &CurvePoint) -> Result<Vec<f64>> {
         /// What a point of the curve may be off, in units of 1 + |x|.
         const OFF: f64 = 1e-12;
-        let mut all = self
-            .functions(&point.u.push(point.lambda), &point.tangent)?
-            .to_vec();
+        let here = point.u.push(point.lambda);
+        let n = here.len() - 2;
+        let field = self.problem.curve.family.field([here[n], here[n + 1]]);
+        let state = self.problem.state(&here);
+        self.problem.take_pair(&field.jacobian(&state));
+        let mut all = self.functions(&here, &point.tangent)?.to_vec();
         let first = point.u[point.u.len() - 1];
         // An infinite end is never met.
         all.extend(self.values().map(|value| {
@@ -259,7 +301,6 @@ impl CurveObserver for Observer<'_, '_> {
                 f64::NAN
             }
         }));
-        let here = point.u.push(point.lambda);
         all.extend((0..self.first.functions).map(|which| {
             beyond_noise(self.user_function(which, &here), |time| {
                 self.user_function(which, &moved_by(&here, OFF, time))
@@ -294,7 +335,7 @@ impl CurveObserver for Observer<'_, '_> {
             zero_of = self.users(i);
             match self.sharp(i, point) {
                 // What is not known to some digits is no zero: of a function that jumps, or has a pole.
-                Some((u, off)) if off.iter().all(|&off| off < KNOWN) => special = Some((u, off)),
+                Some((u, off)) if off[n] < KNOWN && off[n + 1] < KNOWN => special = Some((u, off)),
                 _ => return ControlFlow::Continue(()),
             }
         }
@@ -303,10 +344,10 @@ impl CurveObserver for Observer<'_, '_> {
             None => self.landed(mark, point),
         };
         let (state, at) = self.problem.at(&u, u[n + 1]);
-        let field = self.problem.0.family.field(at);
+        let field = self.problem.curve.family.field(at);
         let jacobian = field.jacobian(&state);
-        let hopf = self.problem.0.kind == EquilibriumBifurcation::Hopf;
-        let frequency = frequency(&jacobian).filter(|_| hopf);
+        let hopf = self.problem.curve.kind == EquilibriumBifurcation::Hopf;
+        let frequency = hopf.then(|| self.frequency(&jacobian)).flatten();
         let label = match mark {
             PointKind::Step => None,
             PointKind::Zero(i) if self.ends(i) => Some(Label::Ep),
@@ -321,7 +362,9 @@ impl CurveObserver for Observer<'_, '_> {
         };
         let uncertainty = match mark {
             PointKind::Step => None,
-            PointKind::Zero(i) if is_sharp(i) => special.map(|(_, off)| off),
+            PointKind::Zero(i) if is_sharp(i) => {
+                special.as_ref().map(|(_, off)| [off[n], off[n + 1]])
+            }
             PointKind::Zero(_) => {
                 let budget = self.problem.budget(&u, n);
                 budget.map(|budget| [0.0, budget[n + 1]])
@@ -334,11 +377,23 @@ impl CurveObserver for Observer<'_, '_> {
         // Where it is zero what is left of it is rounding.
         let frequency = frequency.filter(|_| label != Some(Label::Bt));
         let coefficient = frequency.and_then(|omega| lyapunov(&field, &state, omega));
+        let normal_form = match (label, &special) {
+            (Some(label), Some((unknowns, off))) => CodimensionTwo {
+                family: self.problem.curve.family,
+                label,
+                unknowns,
+                off,
+                frequencies: &self.frequencies(label, &jacobian),
+            }
+            .coefficients(),
+            _ => Vec::new(),
+        };
         (self.seen)(&EquilibriumCurvePoint {
             state,
             at,
             frequency,
             coefficient,
+            normal_form,
             label,
             zero_of,
             uncertainty,

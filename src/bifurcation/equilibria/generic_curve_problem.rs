@@ -1,16 +1,23 @@
 //! The equations of a curve of bifurcations of equilibria, and what rounding makes of their solutions.
 
 use super::bialternate::rounding_of;
-use super::critical::{is_large, pair_frequency};
+use super::critical::{FollowedPair, is_large, pair_frequency};
 use super::generic_curve::{EquilibriumBifurcation, EquilibriumCurve};
 use crate::continuation::ZeroProblem;
 use crate::error::{Error, Result};
 use crate::field::{Matrix, Vector};
 use crate::integrate::{AnyExact, AnyField};
 use crate::number::{Uncertain, eigenvalues, null_vector};
+use std::cell::Cell;
 
 /// f and the determinant as functions of the state and the first coordinate, and of the second.
-pub(super) struct Extended<'a>(pub &'a EquilibriumCurve<'a>);
+pub(super) struct Extended<'a> {
+    pub curve: &'a EquilibriumCurve<'a>,
+    /// Of Hopf points that are followed, the pair on the imaginary axis where the curve stands: at a double Hopf point there are two.
+    pair: Cell<Option<FollowedPair>>,
+    /// Whether its sum is what vanishes, and not that of any two eigenvalues: where another sum is next to zero.
+    alone: Cell<bool>,
+}
 
 /// A correction by Newton's method that may be left to rounding.
 pub(super) const SMALL: f64 = 1e-9;
@@ -24,7 +31,35 @@ pub(super) fn relative(step: &Vector, u: &Vector) -> f64 {
     )
 }
 
-impl Extended<'_> {
+impl<'a> Extended<'a> {
+    /// Without a pair: bifurcations of any.
+    pub fn new(curve: &'a EquilibriumCurve<'a>) -> Self {
+        Extended {
+            curve,
+            pair: Cell::new(None),
+            alone: Cell::new(false),
+        }
+    }
+
+    /// Takes the pair that is followed from the Jacobian at the next point of the curve.
+    pub fn take_pair(&self, jacobian: &Matrix) {
+        if self.curve.kind == EquilibriumBifurcation::Hopf {
+            let next = FollowedPair::of(jacobian, self.pair.get()).or(self.pair.get());
+            self.pair.set(next);
+            self.alone
+                .set(next.is_some_and(|pair| pair.is_near_another(jacobian)));
+        }
+    }
+
+    /// The pair whose sum is what vanishes.
+    fn pair_alone(&self) -> Option<FollowedPair> {
+        self.pair.get().filter(|_| self.alone.get())
+    }
+
+    /// The pair that is followed.
+    pub fn pair(&self) -> Option<FollowedPair> {
+        self.pair.get()
+    }
     /// The derivatives in all of (state, coordinates) but one.
     pub fn square(&self, u: &Vector, held: usize) -> Option<Matrix> {
         let n = u.len() - 2;
@@ -101,17 +136,17 @@ impl Extended<'_> {
         const SAFETY: f64 = 2.0;
         /// Units in the last place of the entries of a Jacobian of many variables, of which a frequency is the sum of many.
         const UNITS: f64 = 1.0;
-        let large = is_large(self.0.family.dimension());
+        let large = is_large(self.curve.family.dimension());
         let jacobian = |u: &Vector| {
             let (state, at) = self.at(&u.rows(0, u.len() - 1).into_owned(), u[u.len() - 1]);
-            self.0.family.field(at).jacobian(&state)
+            self.curve.family.field(at).jacobian(&state)
         };
         let of_jacobian = |jacobian: &Matrix| match large {
-            true => pair_frequency(jacobian),
+            true => pair_frequency(jacobian, None),
             false => frequency(jacobian),
         };
         let of = |u: &Vector| of_jacobian(&jacobian(u));
-        let here = of(u).filter(|_| self.0.kind == EquilibriumBifurcation::Hopf)?;
+        let here = of(u).filter(|_| self.curve.kind == EquilibriumBifurcation::Hopf)?;
         let mut far = match large {
             true => rounding_of(&jacobian(u), UNITS, |j| {
                 of_jacobian(j).unwrap_or(f64::INFINITY)
@@ -164,16 +199,19 @@ impl Extended<'_> {
 
     fn exact(&self, u: &Vector) -> AnyExact {
         let n = u.len() - 2;
-        self.0.family.field([u[n], u[n + 1]]).exact(&self.state(u))
+        self.curve
+            .family
+            .field([u[n], u[n + 1]])
+            .exact(&self.state(u))
     }
 
     fn of_exact(&self, exact: &AnyExact) -> Vector {
-        let rates = exact.f[0].rows(0, self.0.unknowns()).into_owned();
+        let rates = exact.f[0].rows(0, self.curve.unknowns()).into_owned();
         rates.push(self.determinant(&exact.jacobian[0]))
     }
 
     fn determinant(&self, jacobian: &Matrix) -> f64 {
-        self.0.function(jacobian)
+        self.curve.function(jacobian, self.pair_alone())
     }
 
     /// The residuals that are met when the unknowns are changed in their last digit, with what rounding is left in the equations.
@@ -182,7 +220,7 @@ impl Extended<'_> {
         const TRIED: usize = 8;
         /// Units in the last place of the entries of a Jacobian.
         const UNITS: f64 = 1.0;
-        let (n, unknowns) = (u.len() - 2, self.0.unknowns());
+        let (n, unknowns) = (u.len() - 2, self.curve.unknowns());
         let mut noise = Vector::zeros(n + 1);
         for time in 0..TRIED {
             let moved = Vector::from_fn(n + 2, |i, _| {
@@ -204,12 +242,12 @@ impl Extended<'_> {
 
     /// The state of some unknowns, which may be followed by coordinates.
     pub fn state(&self, u: &Vector) -> Vector {
-        let last = self.0.unknowns() - 1;
-        Vector::from_fn(self.0.family.dimension(), |i, _| u[i.min(last)])
+        let last = self.curve.unknowns() - 1;
+        Vector::from_fn(self.curve.family.dimension(), |i, _| u[i.min(last)])
     }
 
     pub fn at(&self, u: &Vector, lambda: f64) -> (Vector, [f64; 2]) {
-        (self.state(u), [u[self.0.unknowns()], lambda])
+        (self.state(u), [u[self.curve.unknowns()], lambda])
     }
 }
 
@@ -227,37 +265,37 @@ pub(super) fn parametrised(field: &AnyField<'_>) -> Result<()> {
 
 impl ZeroProblem for Extended<'_> {
     fn dimension(&self) -> usize {
-        self.0.unknowns() + 1
+        self.curve.unknowns() + 1
     }
 
     fn residual(&self, u: &Vector, lambda: f64) -> Result<Vector> {
         let (y, at) = self.at(u, lambda);
-        let field = self.0.family.field(at);
+        let field = self.curve.family.field(at);
         let critical = self.determinant(&field.jacobian(&y));
-        let rates = field.f(&y).rows(0, self.0.unknowns()).into_owned();
+        let rates = field.f(&y).rows(0, self.curve.unknowns()).into_owned();
         Ok(rates.push(critical))
     }
 
     fn jacobian(&self, u: &Vector, lambda: f64) -> Result<Matrix> {
         let (y, at) = self.at(u, lambda);
-        let field = self.0.family.field(at);
+        let field = self.curve.family.field(at);
         parametrised(&field)?;
-        let (all, n) = (y.len(), self.0.unknowns());
+        let (all, n) = (y.len(), self.curve.unknowns());
         let j = field.jacobian(&y);
-        let slope = self.0.slope(&j)?;
+        let slope = self.curve.slope(&j, self.pair_alone())?;
         let mut matrix = Matrix::zeros(n + 1, n + 2);
         let mut put = |column: usize, f: &Vector, of_jacobian: &dyn Fn(&Vector) -> Vector| {
             let rates = f.rows(0, n);
             matrix.column_mut(column).rows_mut(0, n).copy_from(&rates);
             matrix[(n, column)] = slope.along(all, of_jacobian);
         };
-        for (i, along) in self.0.directions().column_iter().enumerate() {
+        for (i, along) in self.curve.directions().column_iter().enumerate() {
             let along = along.into_owned();
             let change = |v: &Vector| field.second_derivative(&y, &along, v);
             put(i, &(&j * &along), &change);
         }
-        let scale = self.0.family.scale(at);
-        for (k, place) in self.0.family.plane().into_iter().enumerate() {
+        let scale = self.curve.family.scale(at);
+        for (k, place) in self.curve.family.plane().into_iter().enumerate() {
             let f = field.parameter_derivative(&y, place) * scale[k];
             let of_jacobian = field.parameter_jacobian(&y, place) * scale[k];
             put(n + k, &f, &|v| &of_jacobian * v);

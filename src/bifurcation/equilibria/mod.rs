@@ -14,6 +14,7 @@
 
 mod bialternate;
 mod branch;
+mod centre_manifold;
 mod course;
 mod critical;
 mod cubic;
@@ -28,6 +29,7 @@ mod hopf_curve;
 mod locus;
 mod lyapunov;
 pub mod multiple;
+pub mod normal_form;
 mod row;
 mod special;
 mod stationary;

@@ -9,6 +9,7 @@ use crate::bifurcation::Label;
 use crate::bifurcation::equilibria::generic_curve::{
     EquilibriumBifurcation, EquilibriumCurve, EquilibriumCurvePoint, FirstCoordinate,
 };
+use crate::bifurcation::equilibria::normal_form::{Unfolding, unfolding};
 use crate::bifurcation::homoclinic::homoclinic_curves;
 use crate::continuation::{Settings, Stop};
 use crate::error::Result;
@@ -367,17 +368,28 @@ fn point(
         state: found.state.clone(),
         eigenvalues: Vec::new(),
     };
-    // At these points it is zero, or has a pole.
-    let coefficient = found
+    // At these points it is zero, has a pole, or is that of one pair of two.
+    let of_pair = found
         .coefficient
-        .filter(|_| !matches!(label, Some(Label::Gh | Label::Zh)));
+        .filter(|_| !matches!(label, Some(Label::Gh | Label::Zh | Label::Hh)));
+    let Unfolding { criticality, case } = label.map_or_else(Unfolding::default, |label| {
+        unfolding(label, &found.normal_form)
+    });
+    let alone = match &found.normal_form[..] {
+        [alone] => Some(alone.value),
+        _ => None,
+    };
+    let by_pair = of_pair.map(|l_1| self::criticality(l_1, &[]));
     let point = GeneralPoint {
         label,
         period: found
             .frequency
             .map(|omega| Uncertain::new(TAU / omega, f64::INFINITY)),
-        coefficient,
-        criticality: coefficient.map(|l_1| criticality(l_1, &[])),
+        coefficient: alone.map(|alone| alone.value).or(of_pair),
+        coefficient_uncertainty: alone.map(|alone| alone.uncertainty),
+        criticality: criticality.or(by_pair),
+        normal_form: found.normal_form.clone(),
+        note: case,
         ..GeneralPoint::new(number, found.at, solution)
     };
     point.placed(family, found.uncertainty.unwrap_or([f64::INFINITY; 2]))

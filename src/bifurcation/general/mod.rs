@@ -19,6 +19,7 @@ use super::orbits::SpecialOrbit;
 use super::{Criticality, Label, less_accurate, zero_note};
 use crate::bifurcation::equilibria::generic_crossing::BranchCrossing;
 use crate::bifurcation::equilibria::generic_curve::EquilibriumBifurcation;
+use crate::bifurcation::equilibria::normal_form::NormalFormCoefficient;
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::{Error, Result};
 use crate::field::Vector;
@@ -229,6 +230,8 @@ pub struct GeneralPoint {
     pub coefficient: Option<f64>,
     /// It may be off by this, where that is known.
     pub coefficient_uncertainty: Option<f64>,
+    /// Of equilibria at points of codimension two the coefficients of the normal form, where they are known.
+    pub normal_form: Vec<NormalFormCoefficient>,
     /// Of interfaces in clusters what a small split of each that can split grows by: ln mu on an orbit, an eigenvalue at an equilibrium.
     pub within: Vec<WithinCluster>,
     /// What else is to be said.
@@ -364,6 +367,7 @@ impl GeneralPoint {
             criticality: None,
             coefficient: None,
             coefficient_uncertainty: None,
+            normal_form: Vec::new(),
             within: Vec::new(),
             note: None,
             orbit: None,

@@ -93,7 +93,7 @@ impl<'k, 'c, 'a> Beginning<'k, 'c, 'a> {
         Ok(Some(Beginning {
             kind,
             number,
-            settings,
+            settings: settings.with_pair(&here),
             here,
             direction: direction.scaled(falls),
         }))
@@ -120,7 +120,12 @@ impl<'k, 'c, 'a> Beginning<'k, 'c, 'a> {
     }
 
     fn half<'s>(&'s self, seen: GeneralObserver<'s>) -> HalfCurve<'s, 'c, 'a> {
-        HalfCurve::new(self.kind, self.number, &self.here.site, seen)
+        HalfCurve::new(
+            self.kind,
+            self.number,
+            (&self.settings, &self.here.site),
+            seen,
+        )
     }
 }
 

@@ -1,6 +1,7 @@
-//! Hopf points to which curves of orbits shrink: degenerate ones, of folds; and of orbits at which a function vanishes those at which it does too.
+//! Hopf points to which curves of orbits shrink: degenerate ones, of folds; zero-Hopf and double Hopf points, of torus bifurcations; and of orbits at which a
+//! function vanishes those at which it does too.
 //!
-//! Beside one the fold's condition is a small power of the orbit's size, and soon rounding.
+//! Beside one the condition of a fold is a small power of the orbit's size, and soon rounding.
 
 use super::half_curve::CurvesOfKind;
 use crate::bifurcation::Label;
@@ -42,9 +43,10 @@ impl CurvesOfKind<'_, '_> {
                 .zip(largest)
                 .all(|(x, most)| *x < SHRUNK * most)
         };
-        let label = match self.test_function {
-            Some(TestFunction::Fold) => Label::Gh,
-            None => Label::Uf,
+        let labels: &[Label] = match self.test_function {
+            Some(TestFunction::Fold) => &[Label::Gh],
+            Some(TestFunction::Torus) => &[Label::Zh, Label::Hh],
+            None => &[Label::Uf],
             Some(_) => return None,
         };
         if !is_small() {
@@ -64,7 +66,7 @@ impl CurvesOfKind<'_, '_> {
                     .iter()
                     .all(|off| off.abs() < NEAR)
         };
-        let all = self.degenerate.0.get_or_init(|| found(self.curve, label));
+        let all = self.degenerate.0.get_or_init(|| found(self.curve, labels));
         let point = all.iter().find(near)?.clone();
         Some(GeneralPoint {
             number,
@@ -79,12 +81,12 @@ impl CurvesOfKind<'_, '_> {
     }
 }
 
-/// The points of curves of Hopf points that have this label.
-fn found(curve: &GeneralCurve<'_>, label: Label) -> Vec<GeneralPoint> {
+/// The points of curves of Hopf points that have one of these labels.
+fn found(curve: &GeneralCurve<'_>, labels: &[Label]) -> Vec<GeneralPoint> {
     let mut found = Vec::new();
     let mut look = |event| {
         if let GeneralEvent::Row(point) = event
-            && point.label == Some(label)
+            && point.label.is_some_and(|label| labels.contains(&label))
             && let GeneralSolution::Equilibrium { state, .. } = &point.solution
             && let Some(period) = point.period
         {
@@ -103,8 +105,8 @@ fn found(curve: &GeneralCurve<'_>, label: Label) -> Vec<GeneralPoint> {
         Continue(())
     };
     let curve = GeneralCurve {
-        watch: match label {
-            Label::Uf => curve.watch.iter().take(1).cloned().collect(),
+        watch: match labels {
+            [Label::Uf] => curve.watch.iter().take(1).cloned().collect(),
             _ => Vec::new(),
         },
         following: GeneralFollowing {

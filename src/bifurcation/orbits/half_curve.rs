@@ -2,6 +2,7 @@
 
 use super::branches::{LONGEST, ROUGH, new_corrector};
 use super::chart::Chart;
+use super::codimension_two::{codimension_two, met_along};
 use super::cubic_coefficient::Decided;
 use super::degenerate_hopf::DegenerateHopfPoints;
 use super::multipliers_together::is_real;
@@ -79,12 +80,6 @@ impl<'c, 'a> CurvesOfKind<'c, 'a> {
         }
     }
 
-    /// What vanishes along a curve.
-    fn condition(&self) -> WatchedFunction {
-        let bifurcation = self.test_function.map(WatchedFunction::TestFunction);
-        bifurcation.unwrap_or(WatchedFunction::UserFunction(HELD))
-    }
-
     fn watches(&self) -> Vec<WatchedFunction> {
         let curve = self.curve;
         let mut watches = Vec::new();
@@ -94,6 +89,7 @@ impl<'c, 'a> CurvesOfKind<'c, 'a> {
             .iter()
             .position(|name| *name == STIFFNESS);
         let bifurcates = self.test_function.is_some();
+        let dimension = self.chart.family().dimension();
         watches.extend(stiffness.filter(|_| bifurcates).map(WatchedFunction::Turn));
         match self.test_function {
             None => {
@@ -108,13 +104,20 @@ impl<'c, 'a> CurvesOfKind<'c, 'a> {
             Some(TestFunction::Torus) => watches.extend(
                 RESONANCES.map(|(_, sum)| WatchedFunction::TestFunction(TestFunction::Trace(sum))),
             ),
-            Some(TestFunction::Doubling | TestFunction::Fold)
-                if self.chart.family().dimension() > 2 =>
-            {
+            Some(TestFunction::Doubling | TestFunction::Fold) if dimension > 2 => {
                 watches.push(WatchedFunction::TestFunction(TestFunction::Torus));
             }
             _ => {}
         }
+        if self.test_function == Some(TestFunction::Fold) {
+            // At a cusp both coordinates turn; one of them may but be bent.
+            let turns = [0, 1].map(WatchedFunction::Turn).into_iter();
+            let others: Vec<_> = turns.filter(|turn| !watches.contains(turn)).collect();
+            watches.extend(others);
+        }
+        let met = self.test_function.map_or(&[][..], met_along);
+        let met = met.iter().filter(|(_, least)| dimension >= *least);
+        watches.extend(met.map(|(one, _)| WatchedFunction::TestFunction(*one)));
         for (i, (from, to)) in curve.ranges.into_iter().enumerate() {
             let values = [from, to].into_iter().chain(curve.at[i].iter().copied());
             watches.extend(values.map(|x| WatchedFunction::Value(i, x)));
@@ -146,6 +149,10 @@ pub(super) struct HalfCurve<'s, 'c, 'a> {
     pub number: usize,
     /// The variables that orbits are in at the moment.
     pub chart: Chart<'a>,
+    /// What is followed, with the pair on the unit circle where there may be two.
+    settings: PalcSettings,
+    /// Where there are cusps.
+    cusps: Vec<[f64; 3]>,
     /// Where both ways begin.
     begin: [f64; 3],
     seen: GeneralObserver<'s>,
@@ -161,13 +168,15 @@ impl<'s, 'c, 'a> HalfCurve<'s, 'c, 'a> {
     pub fn new(
         kind: &'s CurvesOfKind<'c, 'a>,
         number: usize,
-        begin: &ContinuationPoint,
+        (settings, begin): (&PalcSettings, &ContinuationPoint),
         seen: GeneralObserver<'s>,
     ) -> Self {
         HalfCurve {
             kind,
             number,
             chart: kind.chart,
+            settings: settings.clone(),
+            cusps: Vec::new(),
             begin: pass(begin),
             seen,
             told: Continue(()),
@@ -228,9 +237,13 @@ impl<'s, 'c, 'a> HalfCurve<'s, 'c, 'a> {
         // From where both ways begin on, and up to the ends of the ranges.
         self.decided = None;
         let _ = self.changes(&palc.now.here);
-        let end = palc.follow(&watches, STEPS, &mut |_, before, met| match met {
-            Met::Zero(watch, at) => self.zero(watch, &at.here),
+        let end = palc.follow(&watches, STEPS, &mut |palc, before, met| match met {
+            Met::Zero(watch, at) => {
+                self.settings = palc.curve.settings.clone();
+                self.zero(watch, &at.here)
+            }
             Met::Point(now) => {
+                self.settings = palc.curve.settings.clone();
                 let here = &now.here;
                 if self.chart.merges(&here.site, &before.here.site) {
                     return self.merges(here);
@@ -276,8 +289,6 @@ impl<'s, 'c, 'a> HalfCurve<'s, 'c, 'a> {
 
     /// Something that is watched is zero here.
     fn zero(&mut self, watch: WatchedFunction, near: &Regular) -> ControlFlow<()> {
-        /// The sum of a pair e^(+-i theta) that is certainly not real.
-        const REAL: f64 = 1.999;
         let test_function = self.kind.test_function;
         let sum = sum_of_pair(near);
         let (label, ends) = match watch {
@@ -310,21 +321,36 @@ impl<'s, 'c, 'a> HalfCurve<'s, 'c, 'a> {
                     None => return Continue(()),
                 }
             }
-            // Both multipliers are -1, or 1; elsewhere the pair whose product is 1 has nothing to do with the bifurcation.
-            WatchedFunction::TestFunction(_) => match test_function {
-                Some(TestFunction::Doubling) if sum < -REAL => (Label::R2, false),
-                Some(TestFunction::Fold) if sum > REAL => (Label::R1, false),
-                _ => return Continue(()),
-            },
+            WatchedFunction::TestFunction(one) => {
+                let label = test_function
+                    .and_then(|own| codimension_two(own, one, (near, self.sum_of_pair(near))));
+                match label {
+                    Some(label) => (label, false),
+                    None => return Continue(()),
+                }
+            }
         };
         let point = self.special_point(label, watch, near);
         self.special(point)?;
         if ends { Break(()) } else { Continue(()) }
     }
 
+    /// 2 cos of the angle of the pair that is followed, or else the sum of the two multipliers whose product is nearest to 1.
+    fn sum_of_pair(&self, orbit: &Regular) -> f64 {
+        match self.settings.condition {
+            Some(WatchedFunction::TestFunction(TestFunction::Pair(last))) => {
+                let own = orbit.spectrum.two_pairs(Some(last)).map(|[own, _]| own);
+                own.unwrap_or(last)
+            }
+            _ => sum_of_pair(orbit),
+        }
+    }
+
     /// A point at which something else is zero too.
     fn special_point(&self, label: Label, watch: WatchedFunction, near: &Regular) -> GeneralPoint {
-        let meets = [self.kind.condition(), watch];
+        let held = WatchedFunction::UserFunction(HELD);
+        let own = self.settings.condition.unwrap_or(held);
+        let meets = [own, self.settings.meaning(watch, near).unwrap_or(watch)];
         let (mut point, orbit) =
             special_orbit(self.chart, (self.number, label), near, (&[0, 1], &meets));
         match watch {
@@ -342,17 +368,30 @@ impl<'s, 'c, 'a> HalfCurve<'s, 'c, 'a> {
         self.angled(point, orbit).classified(way)
     }
 
-    /// K is stationary along the curve here: its largest value, if it is that.
+    /// A coordinate is stationary along the curve here: a cusp, where both are, or else the largest K, if it is that.
     fn turns(&mut self, at: &Regular, i: usize) -> ControlFlow<()> {
+        let curve = self.kind.curve;
         let test_function = self.kind.test_function;
         let top = test_function.and_then(|one| top(self.chart.family(), &at.site, one, i));
-        let Some(top) = top.filter(|top| top.largest) else {
-            return Continue(());
+        let is_stiffness = curve.system.names[i] == STIFFNESS;
+        let folds = test_function == Some(TestFunction::Fold);
+        let (label, top) = match top {
+            Some(top) if top.both && folds => (Label::Cp, top),
+            Some(top) if top.largest && is_stiffness => (Label::Top, top),
+            _ => return Continue(()),
         };
+        if label == Label::Cp {
+            let here = pass(&top.orbit.site);
+            let same = |other: &[f64; 3]| (0..3).all(|k| (here[k] - other[k]).abs() < SAME);
+            if self.cusps.iter().any(same) {
+                return Continue(());
+            }
+            self.cusps.push(here);
+        }
         let point = GeneralPoint {
             parameters: top.at,
             period: Some(top.period),
-            ..orbit_point(self.chart, self.number, &top.orbit, Some(Label::Top))
+            ..orbit_point(self.chart, self.number, &top.orbit, Some(label))
         };
         self.special(self.angled(point, &top.orbit))
     }
@@ -390,7 +429,7 @@ impl<'s, 'c, 'a> HalfCurve<'s, 'c, 'a> {
     /// With the angle of the pair on the unit circle.
     pub fn angled(&self, mut point: GeneralPoint, orbit: &Regular) -> GeneralPoint {
         if self.kind.test_function == Some(TestFunction::Torus) {
-            let sum = sum_of_pair(orbit);
+            let sum = self.sum_of_pair(orbit);
             point.angle_over_pi = Some((0.5 * sum).clamp(-1.0, 1.0).acos() / PI);
         }
         point

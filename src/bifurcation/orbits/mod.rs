@@ -4,6 +4,7 @@ mod branch_end;
 mod branch_zero;
 mod branches;
 mod chart;
+mod codimension_two;
 mod crosscheck;
 mod cubic_coefficient;
 mod curve;

@@ -21,6 +21,8 @@ pub struct Top {
     pub period: Uncertain,
     /// Whether it is a maximum.
     pub largest: bool,
+    /// Whether the other parameter is stationary too: the curve has a cusp.
+    pub both: bool,
 }
 
 /// Points of the interpolation, and the half widths of its two intervals.
@@ -28,6 +30,8 @@ const POINTS: usize = 13;
 const WIDTHS: [f64; 2] = [0.04, 0.027];
 /// Tolerance of the points.
 const FINE: f64 = 1e-16;
+/// A slope, over half the interval, that is less than this part of the other coordinate's bend is zero.
+const STAYS: f64 = 1e-4;
 /// A stationary point within this part of the shorter arc is in its midst.
 const CENTRED: f64 = 0.5;
 
@@ -82,6 +86,7 @@ pub fn top(
         at: [uncertain(0), uncertain(1)],
         period: Uncertain::new(second.period, apart + 1e-14 * second.period),
         largest: second.bend < 0.0,
+        both: first.both && second.both,
         orbit,
     })
 }
@@ -91,6 +96,8 @@ struct Stationary {
     at: [f64; 2],
     period: f64,
     bend: f64,
+    /// Whether the other coordinate is stationary too.
+    both: bool,
     /// What the points' own noise makes of both coordinates.
     errors: [f64; 2],
 }
@@ -153,6 +160,7 @@ fn stationary(
         at: in_order([value(&v, x).0, top]),
         period: value(&t, x).0,
         bend,
+        both: slope_of_v.abs() < STAYS * bend.abs(),
     })
 }
 

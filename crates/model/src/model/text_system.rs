@@ -306,6 +306,37 @@ impl TextSystem {
         rates.map(|f| f.gradient[0].gradient[0]).collect()
     }
 
+    /// The rates along a curve, as power series to the fifth order. With five numbers whose squares are 0 the k-th power of their sum is k! times the sum of
+    /// all products of k of them.
+    fn series_along(&self, curve: [&[f64]; 6]) -> [Vec<f64>; 6] {
+        const FACTORIALS: [f64; 6] = [1.0, 1.0, 2.0, 6.0, 24.0, 120.0];
+        let at = |i: usize| {
+            let of = |k: usize| FACTORIALS[k] * curve[k][i];
+            let one = |k: usize| single(of(k), of(k + 1));
+            let two = |k: usize| with_slope(one(k), one(k + 1));
+            let three = |k: usize| with_slope(two(k), two(k + 1));
+            let four = |k: usize| with_slope(three(k), three(k + 1));
+            with_slope(four(0), four(1))
+        };
+        let x: Vec<_> = (0..self.variables()).map(at).collect();
+        let rates = self.rates(&x);
+        let of = |k: usize, f: fn(&FifthJet) -> f64| -> Vec<f64> {
+            rates.iter().map(|rate| f(rate) / FACTORIALS[k]).collect()
+        };
+        [
+            of(0, |f| f.value.value.value.value.value),
+            of(1, |f| f.gradient[0].value.value.value.value),
+            of(2, |f| f.gradient[0].gradient[0].value.value.value),
+            of(3, |f| f.gradient[0].gradient[0].gradient[0].value.value),
+            of(4, |f| {
+                f.gradient[0].gradient[0].gradient[0].gradient[0].value
+            }),
+            of(5, |f| {
+                f.gradient[0].gradient[0].gradient[0].gradient[0].gradient[0]
+            }),
+        ]
+    }
+
     fn parameter_derivative(&self, y: &[f64], place: usize) -> Vec<f64> {
         let x: Vec<_> = y.iter().map(|&y| single(y, 0.0)).collect();
         let along = |(q, &p): (usize, &f64)| single(p, f64::from(u8::from(q == place)));
@@ -340,6 +371,17 @@ fn single(value: f64, slope: f64) -> Jet<f64, 1> {
         gradient: [slope],
     }
 }
+
+/// A number with its derivative in one more direction.
+fn with_slope<T>(value: T, slope: T) -> Jet<T, 1> {
+    Jet {
+        value,
+        gradient: [slope],
+    }
+}
+
+/// With derivatives in five directions.
+type FifthJet = Jet<Jet<Jet<Jet<Jet<f64, 1>, 1>, 1>, 1>, 1>;
 
 /// The same name for as long as the program runs: fields have names that do not end. Each is kept once.
 fn kept(name: &str) -> &'static str {
@@ -417,6 +459,11 @@ impl<const N: usize> VectorField<N> for TextField<'_, N> {
             .system
             .second_derivative([y, u, v].map(|x| self.variables(x)));
         state(&made)
+    }
+
+    fn series_along(&self, curve: &[State<N>; 6]) -> Option<[State<N>; 6]> {
+        let curve = curve.each_ref().map(|x| self.variables(x));
+        Some(self.system.series_along(curve).map(|rates| state(&rates)))
     }
 
     fn exact(&self, y: &State<N>) -> Option<ExactField<N>> {

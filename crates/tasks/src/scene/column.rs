@@ -17,6 +17,8 @@ pub enum CellValue {
     Uncertain(Option<Uncertain>),
     /// A word.
     Word(Option<String>),
+    /// Numbers with their names and error budgets.
+    Named(Vec<(String, Uncertain)>),
     /// A count.
     Count(usize),
 }
@@ -166,7 +168,7 @@ impl<R> Column<R> {
             CellValue::Number(x) => x,
             CellValue::Uncertain(x) => x.map(|x| x.value),
             CellValue::Count(n) => return n as f64,
-            CellValue::Word(_) => None,
+            CellValue::Word(_) | CellValue::Named(_) => None,
         };
         x.map_or(f64::NAN, |x| units.outward(self.quantity, x))
     }

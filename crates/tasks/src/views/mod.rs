@@ -2,6 +2,7 @@
 
 use crate::scene::{CellValue, Column, Quantity, Units};
 use serde_json::{Map, Value, json};
+use twinslip::number::Uncertain;
 use twinslip_output::Cell;
 
 mod bifurcation;
@@ -87,6 +88,15 @@ pub fn cells<R>(columns: &[Column<R>], row: &R, units: &Units, table: bool) -> V
             }
             CellValue::Word(word) => cells.push(word.map_or(Cell::Missing, Cell::Text)),
             CellValue::Count(n) => cells.push(Cell::Text(n.to_string())),
+            CellValue::Named(all) if all.is_empty() => cells.push(Cell::Missing),
+            CellValue::Named(all) => {
+                let each = all.iter().map(|(name, x)| {
+                    let Uncertain { value, uncertainty } = x;
+                    format!("{name} = {value} +- {uncertainty:e}")
+                });
+                let each: Vec<String> = each.collect();
+                cells.push(Cell::Text(each.join("; ")));
+            }
         }
     }
     cells
@@ -102,6 +112,14 @@ pub fn object<R>(columns: &[Column<R>], row: &R, units: &Units) -> Map<String, V
         }),
         CellValue::Word(word) => json!(word),
         CellValue::Count(n) => json!(n),
+        CellValue::Named(all) if all.is_empty() => Value::Null,
+        CellValue::Named(all) => {
+            let each = all.into_iter().map(|(name, x)| {
+                let x = twinslip_output::uncertain((x.value, x.uncertainty));
+                (name, x)
+            });
+            Value::Object(each.collect())
+        }
     };
     let pairs = columns.iter();
     pairs

@@ -62,6 +62,8 @@ pub struct GeneralRow {
     pub coefficient: Option<f64>,
     /// It may be off by this, where that is known.
     pub coefficient_uncertainty: Option<f64>,
+    /// Of equilibria at points of codimension two the coefficients of the normal form.
+    pub normal_form: Vec<(String, Uncertain)>,
     /// Stability, of branches.
     pub verdict: Option<Verdict>,
     /// What is special here.
@@ -108,6 +110,23 @@ impl GeneralRow {
         for (name, _) in &names[free..] {
             parameters.push(Uncertain::new(subject.value(name)?, 0.0));
         }
+        // In the user's unit of time; lengths are in the units of the variables.
+        let normal_form: Vec<(String, Uncertain)> = point
+            .normal_form
+            .iter()
+            .map(|one| {
+                let unit = time.powi(one.time);
+                let Uncertain { value, uncertainty } = one.value;
+                (
+                    one.name.to_owned(),
+                    Uncertain::new(value * unit, uncertainty * unit),
+                )
+            })
+            .collect();
+        let alone = match &normal_form[..] {
+            [(_, alone)] => Some(*alone),
+            _ => None,
+        };
         let symmetry = subject.has_equal_parts();
         Ok(GeneralRow {
             symmetry: symmetry.then(|| {
@@ -129,8 +148,13 @@ impl GeneralRow {
             multiplicity: point.multiplicity,
             saddle_node: point.saddle_node,
             criticality: point.criticality,
-            coefficient: point.coefficient.map(|x| x / square),
-            coefficient_uncertainty: point.coefficient_uncertainty.map(|x| x / square),
+            coefficient: alone
+                .map_or_else(|| point.coefficient.map(|x| x / square), |x| Some(x.value)),
+            coefficient_uncertainty: alone.map_or_else(
+                || point.coefficient_uncertainty.map(|x| x / square),
+                |x| Some(x.uncertainty),
+            ),
+            normal_form,
             verdict: (!kind.curve).then(|| point.verdict()),
             label: point.label,
             note: point.note,
@@ -276,6 +300,10 @@ impl GeneralRow {
                 count.map_or(CellValue::Number(None), CellValue::Count)
             })
             .not_in_table(),
+            Column::new("normal_form", Number, |row: &Row| {
+                CellValue::Named(row.normal_form.clone())
+            })
+            .not_in_table(),
         ]);
         columns
     }
@@ -329,6 +357,7 @@ impl GeneralRow {
                 .find(|side| side.name() == cell("criticality")),
             coefficient: number("coefficient"),
             coefficient_uncertainty: number("coefficient_uncertainty"),
+            normal_form: named(&cell("normal_form")).unwrap_or_default(),
             verdict: verdicts
                 .into_iter()
                 .find(|verdict| verdict.name() == cell("verdict")),
@@ -338,6 +367,17 @@ impl GeneralRow {
             orbit: None,
         })
     }
+}
+
+/// Named numbers with their error budgets, as a cell of a CSV has them.
+fn named(cell: &str) -> Option<Vec<(String, Uncertain)>> {
+    let parts = cell.split("; ").map(|part| {
+        let (name, number) = part.split_once(" = ")?;
+        let (value, uncertainty) = number.split_once(" +- ")?;
+        let number = Uncertain::new(value.parse().ok()?, uncertainty.parse().ok()?);
+        Some((name.to_owned(), number))
+    });
+    parts.collect()
 }
 
 /// The real and imaginary parts of the eigenvector q, with <q, q> = 1, of the oscillation at a Hopf point.
