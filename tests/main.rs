@@ -24,6 +24,7 @@ mod browser;
 mod cluster_branches;
 mod cluster_equilibria;
 mod clusters;
+mod codimension_two;
 mod continuation;
 mod curves_equilibria;
 mod curves_orbits;

@@ -211,7 +211,7 @@ pub(in crate::bifurcation) fn unfolding(label: Label, all: &[NormalFormCoefficie
         },
         Label::Zh => {
             let theta = of("theta").and_then(sign);
-            let s = of("s").map(|s| s.value);
+            let s = of("s").and_then(sign);
             let case = s.zip(theta).map(|(s, theta)| {
                 let tori = if s * theta < 0.0 { "" } else { "no " };
                 let side = if theta < 0.0 { "<" } else { ">" };

@@ -8,7 +8,7 @@ use crate::bifurcation::Label;
 use crate::bifurcation::equilibria::generic_curve::EquilibriumBifurcation;
 use crate::bifurcation::general::curves::equilibrium_curves;
 use crate::bifurcation::general::{
-    GeneralCurve, GeneralEvent, GeneralFollowing, GeneralPoint, GeneralSolution,
+    GeneralCurve, GeneralEvent, GeneralFollowing, GeneralPoint, GeneralSolution, SAME,
 };
 use crate::field::Vector;
 use crate::orbit::{ContinuationPoint, ShootingNodes, TestFunction};
@@ -57,8 +57,10 @@ impl CurvesOfKind<'_, '_> {
             let GeneralSolution::Orbit { shooting: rest, .. } = &point.solution else {
                 return false;
             };
-            let size = extents.sup(&(largest * STILL));
-            let off = |x: &Vector| (x - &rest.nodes[0]).component_div(&size).amax();
+            let at_rest = &rest.nodes[0];
+            let rounding = at_rest.map(|x| SAME * (1.0 + x.abs()));
+            let size = extents.sup(&(largest * STILL)).sup(&rounding);
+            let off = |x: &Vector| (x - at_rest).component_div(&size).amax();
             let part = |i: usize| (point.at[i] - at[i]) / (ranges[i].1 - ranges[i].0);
             let of_period = (shooting.period() / rest.period()).ln();
             shooting.nodes.iter().all(|x| off(x) < BESIDE)

@@ -154,6 +154,10 @@ const MEANINGS: &[(&str, &str)] = &[
         "number of interfaces on the middle branch of the steady-state law",
     ),
     ("name", "the label in words"),
+    (
+        "normal_form",
+        "coefficients of the normal form of a point of codimension two, with their bounds",
+    ),
     ("note", "what is to be known of the row, in words"),
     (
         "period",
