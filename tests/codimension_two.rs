@@ -423,6 +423,21 @@ fn normal_forms_have_the_coefficients_of_the_closed_forms() {
     has(&all, "HH", &ratios);
 }
 
+/// From 40 digits, by the multilinear forms of Kuznetsov (1999), of the Lorenz system of 1984 and of the Roessler system.
+#[test]
+fn normal_forms_have_the_coefficients_of_forty_digits() {
+    let run =
+        "locus hopf --system lorenz-84 --set a=0.25 --set b=4 --in F,G --range F=0,4 --range G=0,4";
+    let zero_hopf = [
+        ("s", 1.0),
+        ("theta", -4.063_270_535_527_228),
+        ("E_0", 1.477_146_189_873_172_3),
+    ];
+    has(&special(run), "ZH", &zero_hopf);
+    let run = "locus hopf --system roessler --in a,c --range a=0.05,1.5 --range c=0.2,6";
+    has(&special(run), "GH", &[("l_2", 0.377_819_221_256_898_3)]);
+}
+
 /// A curve of tori of a cycle that shrinks to a double Hopf point or to a zero-Hopf point ends there, and nothing is told of rounding beside it. Around the
 /// z axis of the normal form of a zero-Hopf point the tori are on b2 = 0, and the second frequency is sqrt(1.6 r^2).
 #[test]
