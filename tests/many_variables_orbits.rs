@@ -13,7 +13,7 @@ fn number(text: &Value) -> f64 {
 }
 
 /// A ring of van der Pol's oscillators, which begins in phase.
-fn oscillators(count: usize, x: f64) -> String {
+pub fn oscillators(count: usize, x: f64) -> String {
     let states: Vec<String> = (0..count)
         .flat_map(|i| [format!("x{i}"), format!("y{i}")])
         .collect();

@@ -17,6 +17,7 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 TASKS = [
     "brute-force-diagram",
     "coming-from-scipy",
+    "large-systems",
     "python-beside-scipy",
     "python-functions-as-systems",
 ]

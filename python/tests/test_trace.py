@@ -69,6 +69,33 @@ def two_blocks(x: Any, p: Any) -> Any:
     return np.concatenate([p.nu - v, pull - np.array([1, p.beta]) * friction])
 
 
+def lorenz_96(x: Any, p: Any) -> Any:
+    return (np.roll(x, -1) - np.roll(x, 2)) * np.roll(x, 1) - x + p.F
+
+
+def oscillator_ring(x: Any, p: Any) -> Any:
+    y, v = x[0::2], x[1::2]
+    pull = np.roll(y, -1) + np.roll(y, 1) - 2 * y
+    return np.column_stack([v, p.mu * (1 - y**2) * v - y + p.k * pull]).ravel()
+
+
+def brusselator_cells(x: Any, p: Any) -> Any:
+    u, v = x[:25], x[25:]
+    made = u**2 * v
+
+    def diffusing(u: Any, ends: Any, rate: Any) -> Any:
+        along = [ends, *u, ends]
+        return [
+            rate * (26 / p.L) ** 2 * (along[i - 1] - 2 * along[i] + along[i + 1])
+            for i in range(1, 26)
+        ]
+
+    return [
+        *(p.A - (p.B + 1) * u + made + diffusing(u, p.A, p.Dx)),
+        *(p.B * u - made + diffusing(v, p.B / p.A, p.Dy)),
+    ]
+
+
 def duffing(t: Any, x: Any, p: Any) -> Any:
     force = p.gamma * np.cos(p.omega * t)
     return x["v"], x["x"] - x["x"] ** 3 - p.delta * x["v"] + force
@@ -84,6 +111,9 @@ SHIPPED = {
     "lorenz-84": lorenz_84,
     "inertial-block": inertial_block,
     "two-blocks": two_blocks,
+    "lorenz-96": lorenz_96,
+    "oscillator-ring": oscillator_ring,
+    "brusselator-cells": brusselator_cells,
 }
 
 

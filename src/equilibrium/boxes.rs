@@ -178,6 +178,12 @@ fn krawczyk(equations: &dyn Enclosed, x: &[Interval]) -> Option<IntervalBox> {
     let point: Vec<Interval> = m.iter().map(|&m| Interval::new(m, m)).collect();
     let values = equations.values(&point);
     let exact = |x: f64| Interval::new(x, x);
+    // Of many variables most equations have few.
+    let with = |j: usize| -> Vec<usize> {
+        let rows = (0..n).filter(|k| jacobian[k * n + j] != exact(0.0));
+        rows.collect()
+    };
+    let with: Vec<Vec<usize>> = (0..n).map(with).collect();
     let image = |i: usize| {
         let mut sum = point[i];
         for k in 0..n {
@@ -185,7 +191,7 @@ fn krawczyk(equations: &dyn Enclosed, x: &[Interval]) -> Option<IntervalBox> {
         }
         for j in 0..n {
             let mut rest = exact(f64::from(u8::from(i == j)));
-            for k in 0..n {
+            for &k in &with[j] {
                 rest = rest - exact(inverse[(i, k)]) * jacobian[k * n + j];
             }
             sum = sum + rest * (x[j] - point[j]);

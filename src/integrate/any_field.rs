@@ -6,7 +6,7 @@
 use super::Taylor;
 use super::static_field::{Flows, Static};
 use crate::error::{Error, Result};
-use crate::field::{Matrix, Vector, VectorField};
+use crate::field::{Matrix, SecondDerivative, Vector, VectorField};
 use crate::model::{TextField, TextSystem};
 use crate::series::Jet3;
 use std::borrow::Cow;
@@ -148,6 +148,11 @@ impl<'a> AnyField<'a> {
     /// The power series in s, to the fifth order, of f along a curve that is given as one. `None` for fields without such a computation.
     pub fn series_along(&self, curve: &[Vector; 6]) -> Option<[Vector; 6]> {
         self.0.series_along(curve)
+    }
+
+    /// All second derivatives of f at y, but for such as are zero everywhere.
+    pub fn second_derivatives(&self, y: &Vector) -> Vec<SecondDerivative> {
+        self.0.second_derivatives(y.as_slice())
     }
 
     /// The names of the parameters; none where the field can't be differentiated in any.

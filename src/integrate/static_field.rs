@@ -5,7 +5,9 @@ use super::any_integrator::{AnyIntegrator, FlowDerivatives, Method};
 use super::any_step::{AnyObserver, AnyStep};
 use super::{Control, Integrator, Observer, Radau, Step, Taylor, Work};
 use crate::error::{Error, Result};
-use crate::field::{ExactField, Jacobian, Matrix, State, Vector, VectorField, state};
+use crate::field::{
+    ExactField, Jacobian, Matrix, SecondDerivative, State, Vector, VectorField, state,
+};
 use crate::series::{Jet3, Tangent};
 
 /// What a field of a dimension that the compiler knows does for one of any.
@@ -19,6 +21,7 @@ pub(super) trait Flows: Send + Sync {
     fn newton_step(&self, y: &[f64]) -> Option<Vector>;
     fn second_derivative(&self, y_u_v: [&[f64]; 3]) -> Vector;
     fn series_along(&self, curve: &[Vector; 6]) -> Option<[Vector; 6]>;
+    fn second_derivatives(&self, y: &[f64]) -> Vec<SecondDerivative>;
     fn parameter_names(&self) -> &[&'static str];
     fn parameter_derivative(&self, y: &[f64], place: usize) -> Vector;
     fn parameter_jacobian(&self, y: &[f64], place: usize) -> Matrix;
@@ -207,6 +210,10 @@ impl<const N: usize> Flows for Static<'_, N> {
         let curve = curve.each_ref().map(|x| self.state(x.as_slice()));
         let made = self.field().series_along(&curve)?;
         Some(made.map(|x| self.vector(&x)))
+    }
+
+    fn second_derivatives(&self, y: &[f64]) -> Vec<SecondDerivative> {
+        self.field().second_derivatives(&self.state(y))
     }
 
     fn parameter_names(&self) -> &[&'static str] {

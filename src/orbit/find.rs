@@ -92,8 +92,15 @@ impl FoundOrbit {
 pub(super) const ROUGH: f64 = 1e-10;
 /// Tolerance with which cycles are told from ones traversed twice.
 pub(super) const FINE: f64 = 1e-15;
-/// Steps of a search, at most: some seconds of work.
+/// Steps of a search, at most: some seconds of work for few variables.
 pub(super) const SEARCH: usize = 2_000_000;
+
+/// The same for so many variables: what a step with its tangents takes grows with the square of their number.
+pub(super) fn search_steps(variables: usize) -> usize {
+    const FEW: usize = 8;
+    SEARCH * FEW.pow(2) / variables.max(FEW).pow(2)
+}
+
 /// Periods that differ by less, relatively, are of one orbit.
 const SAME_PERIOD: f64 = 1e-7;
 
@@ -377,7 +384,8 @@ impl<'a> Guesses<'a> {
         /// Turns of an orbit that is looked at.
         const TURNS: usize = 64;
         let field = self.space.field();
-        let mut tracer = Tracer::limited_by(accuracy.method, ROUGH, accuracy.max_steps, SEARCH)?;
+        let search = search_steps(field.dimension());
+        let mut tracer = Tracer::limited_by(accuracy.method, ROUGH, accuracy.max_steps, search)?;
         let [low, high] = orbit.extremes[0];
         let level = 0.5 * (low.value + high.value);
         let (mut passed, mut begin) = (Vec::new(), 0.0);

@@ -1,7 +1,7 @@
 //! A periodic orbit of any field, near a point or as what a run from there settles on.
 
 use super::arc::Tracer;
-use super::find::{FINE, FoundOrbit, Guesses, ROUGH, SEARCH, completed};
+use super::find::{FINE, FoundOrbit, Guesses, ROUGH, completed, search_steps};
 use super::no_orbit;
 use super::settle::passages;
 use super::shooting_nodes::ShootingNodes;
@@ -41,7 +41,9 @@ pub fn find_from(
         // Where the explicit method gets nowhere the orbit may be that of a stiff system.
         Err(error) if accuracy.method == Choice::Auto => {
             let stiff = OrbitAccuracy {
-                all_steps: accuracy.all_steps.min(SEARCH / OVER_TAYLOR),
+                all_steps: accuracy
+                    .all_steps
+                    .min(search_steps(field.dimension()) / OVER_TAYLOR),
                 ..accuracy.stiff()
             };
             match find_by(field, start, period, &stiff) {
@@ -60,7 +62,7 @@ fn find_by(
     period: Option<f64>,
     accuracy: &OrbitAccuracy,
 ) -> Result<FoundOrbit> {
-    let search = SEARCH.min(accuracy.all_steps);
+    let search = search_steps(field.dimension()).min(accuracy.all_steps);
     let mut tracer = Tracer::limited_by(accuracy.method, ROUGH, accuracy.max_steps, search)?;
     let space = Alone {
         field,

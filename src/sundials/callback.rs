@@ -282,6 +282,7 @@ pub(super) unsafe extern "C" fn linear_system<const N: usize>(
             return FATAL;
         };
         let content = newton::<N>(a);
+        content.variables = frame.problem.field.dimension();
         *current = c_int::from(keep == 0);
         if keep == 0 {
             match frame.newton_jacobian(&read::<OwnVectors, N>(y)) {
@@ -325,6 +326,40 @@ pub(super) unsafe extern "C" fn events<S: Storage, const N: usize>(
     }
 }
 
+/// The product of J with many columns: of many variables by the entries that are not zero, as most of theirs are.
+enum Product<'j, const N: usize> {
+    Whole(&'j Jacobian<N>),
+    /// Row, column and value.
+    Entries(Vec<(usize, usize, f64)>),
+}
+
+impl<'j, const N: usize> Product<'j, N> {
+    #[inline(always)]
+    fn of(j: &'j Jacobian<N>) -> Self {
+        const FEW: usize = 8;
+        if N <= FEW {
+            return Product::Whole(j);
+        }
+        let places = (0..N).flat_map(|k| (0..N).map(move |i| (i, k)));
+        let entries = places.map(|(i, k)| (i, k, j[(i, k)]));
+        Product::Entries(entries.filter(|entry| entry.2 != 0.0).collect())
+    }
+
+    #[inline(always)]
+    fn with(&self, s: &State<N>) -> State<N> {
+        match self {
+            Product::Whole(j) => *j * s,
+            Product::Entries(entries) => {
+                let mut made = State::zeros();
+                for &(i, k, value) in entries {
+                    made[i] += value * s[k];
+                }
+                made
+            }
+        }
+    }
+}
+
 /// ds/dt = J s + df/dp for every column.
 ///
 /// # Safety
@@ -351,8 +386,9 @@ pub(super) unsafe extern "C" fn sensitivity_right_hand_side<S: Storage, const N:
             Err(code) => return code,
             Ok(j) => j,
         };
+        let product = Product::of(&j);
         for column in 0..count as usize {
-            let mut derivative = j * read::<S, N>(*s.add(column));
+            let mut derivative = product.with(&read::<S, N>(*s.add(column)));
             if let Some(forcing) = frame.problem.forcing {
                 match frame.guard.run(|| forcing(column, &y)) {
                     None => return FATAL,

@@ -23,6 +23,17 @@ pub(super) struct Newton<const N: usize> {
     pub jacobian: Jacobian<N>,
     /// The matrix of the linear system; its factors once the solver has set it up.
     pub system: Jacobian<N>,
+    /// How many of the N components are variables: beside these the system is the identity.
+    pub variables: usize,
+}
+
+impl<const N: usize> Newton<N> {
+    /// The rows that elimination goes through: of few all, so that their number is known to the compiler.
+    #[inline(always)]
+    fn rows(&self) -> usize {
+        const FEW: usize = 8;
+        if N > FEW { self.variables } else { N }
+    }
 }
 
 /// The owner of a matrix.
@@ -143,6 +154,7 @@ unsafe fn new_matrix<const N: usize>(context: sundials_sys::SUNContext) -> SUNMa
         (*a).content = Box::into_raw(Box::new(Newton::<N> {
             jacobian: Jacobian::zeros(),
             system: Jacobian::zeros(),
+            variables: N,
         }))
         .cast();
         a
@@ -183,8 +195,13 @@ unsafe extern "C" fn zero_matrix<const N: usize>(a: SUNMatrix) -> c_int {
 unsafe extern "C" fn copy_matrix<const N: usize>(a: SUNMatrix, b: SUNMatrix) -> c_int {
     // SAFETY: live matrices of ours; copied by value, since they may be the same.
     unsafe {
-        let (jacobian, system) = (newton::<N>(a).jacobian, newton::<N>(a).system);
-        *newton::<N>(b) = Newton { jacobian, system };
+        let from = newton::<N>(a);
+        let (jacobian, system, variables) = (from.jacobian, from.system, from.variables);
+        *newton::<N>(b) = Newton {
+            jacobian,
+            system,
+            variables,
+        };
     }
     0
 }
@@ -212,15 +229,12 @@ unsafe extern "C" fn free_solver<const N: usize>(s: SUNLinearSolver) -> c_int {
 /// M = P L U in place.
 unsafe extern "C" fn factorise<const N: usize>(s: SUNLinearSolver, a: SUNMatrix) -> c_int {
     // SAFETY: a live solver and matrix of ours; their contents are apart.
-    let (m, pivots) = unsafe {
-        (
-            &mut newton::<N>(a).system,
-            &mut *(*s).content.cast::<[usize; N]>(),
-        )
-    };
-    for k in 0..N {
+    let (newton, pivots) = unsafe { (newton::<N>(a), &mut *(*s).content.cast::<[usize; N]>()) };
+    let rows = newton.rows();
+    let m = &mut newton.system;
+    for k in 0..rows {
         let mut pivot = k;
-        for i in k + 1..N {
+        for i in k + 1..rows {
             if m[(i, k)].abs() > m[(pivot, k)].abs() {
                 pivot = i;
             }
@@ -233,13 +247,15 @@ unsafe extern "C" fn factorise<const N: usize>(s: SUNLinearSolver, a: SUNMatrix)
         if pivot != k {
             m.swap_rows(pivot, k);
         }
-        // As SUNDIALS's dense solver does, so that both take the same steps.
+        // As SUNDIALS's dense solver does, so that both take the same steps. Column by column, as they lie in memory.
         let reciprocal = 1.0 / divisor;
-        for i in k + 1..N {
+        for i in k + 1..rows {
             m[(i, k)] *= reciprocal;
-            let factor = m[(i, k)];
-            for j in k + 1..N {
-                let upper = m[(k, j)];
+        }
+        for j in k + 1..rows {
+            let upper = m[(k, j)];
+            for i in k + 1..rows {
+                let factor = m[(i, k)];
                 m[(i, j)] -= factor * upper;
             }
         }
@@ -256,22 +272,24 @@ unsafe extern "C" fn substitute<const N: usize>(
     _tolerance: f64,
 ) -> c_int {
     // SAFETY: a live solver, matrix and vectors of ours.
-    let (m, pivots, mut y) = unsafe {
+    let (newton, pivots, mut y) = unsafe {
         (
-            &newton::<N>(a).system,
+            newton::<N>(a),
             &*(*s).content.cast::<[usize; N]>(),
             vector::read::<OwnVectors, N>(b),
         )
     };
-    for (k, pivot) in pivots.iter().enumerate() {
+    let rows = newton.rows();
+    let m = &newton.system;
+    for (k, pivot) in pivots[..rows].iter().enumerate() {
         y.swap_rows(k, *pivot);
     }
-    for k in 0..N {
-        for i in k + 1..N {
+    for k in 0..rows {
+        for i in k + 1..rows {
             y[i] -= m[(i, k)] * y[k];
         }
     }
-    for k in (0..N).rev() {
+    for k in (0..rows).rev() {
         y[k] /= m[(k, k)];
         for i in 0..k {
             y[i] -= m[(i, k)] * y[k];

@@ -228,7 +228,11 @@ impl Modes {
 /// d2f/dy_a dy_b, row by row.
 fn second_derivatives(field: &AnyField<'_>, y: &Vector) -> Vec<Vector> {
     let n = y.len();
-    let axis = |i: usize| Vector::from_fn(n, |j, _| f64::from(u8::from(i == j)));
-    let along = |i: usize| field.second_derivative(y, &axis(i / n), &axis(i % n));
-    (0..n * n).map(along).collect()
+    let mut all = vec![Vector::zeros(n); n * n];
+    for second in field.second_derivatives(y) {
+        for (i, j) in second.orders() {
+            all[i * n + j][second.of] = second.value;
+        }
+    }
+    all
 }

@@ -89,6 +89,24 @@ pub trait VectorField<const N: usize>: Send + Sync {
         None
     }
 
+    /// All second derivatives of f at y, but for such as are zero everywhere. Fields that know which variables each component depends on make them
+    /// from few evaluations.
+    fn second_derivatives(&self, y: &State<N>) -> Vec<SecondDerivative> {
+        let unit = |i: usize| State::from_fn(|k, _| f64::from(u8::from(i == k)));
+        let mut all = Vec::new();
+        for i in 0..self.dimension() {
+            for j in i..self.dimension() {
+                let along = self.second_derivative(y, &unit(i), &unit(j));
+                all.extend((0..self.dimension()).map(|of| SecondDerivative {
+                    of,
+                    by: [i, j],
+                    value: along[of],
+                }));
+            }
+        }
+        all
+    }
+
     /// Computes f(y) and J(y) in 31 digits, which avoids cancellation in double precision. `None` for fields without such a computation.
     fn exact(&self, _y: &State<N>) -> Option<ExactField<N>> {
         None
@@ -157,6 +175,26 @@ pub trait VectorField<const N: usize>: Send + Sync {
     /// The field in power series, where it can be written so: what a Taylor integrator steps with.
     fn analytic(&self) -> Option<&dyn Analytic<N>> {
         None
+    }
+}
+
+/// A second derivative of a component of f, in two variables or twice in one. It stands for both orders.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SecondDerivative {
+    /// The component.
+    pub of: usize,
+    /// The variables.
+    pub by: [usize; 2],
+    /// The value.
+    pub value: f64,
+}
+
+impl SecondDerivative {
+    /// The variables in both orders, or once where they are one.
+    pub fn orders(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let [i, j] = self.by;
+        let other = (i != j).then_some((j, i));
+        std::iter::once((i, j)).chain(other)
     }
 }
 

@@ -190,11 +190,6 @@ impl<'a> FieldEquilibria<'a> {
         self.field(p).exact(y)
     }
 
-    /// D2f along two directions.
-    pub(super) fn second(&self, y: &Vector, p: f64, (u, v): (&Vector, &Vector)) -> Vector {
-        self.field(p).second_derivative(y, u, v)
-    }
-
     /// The equilibrium near a state; `None` where Newton's method does not find it.
     pub(in crate::bifurcation) fn corrected(&self, near: &Vector, p: f64) -> Option<Vector> {
         /// Iterations, and a correction that is the last, in units of 1 + |y|.

@@ -128,17 +128,16 @@ fn crossing(family: &FieldEquilibria<'_>, u: &Vector) -> Option<BranchCrossing> 
         u.rows(n + 2, n).into_owned(),
     );
     let phi = null_vector(family.exact(&y, p).jacobian[0].clone())?;
-    let part = |i: usize| Vector::from_fn(n, |k, _| if k == i { phi[i] } else { 0.0 });
     let at = |y: &Vector| {
-        let (mut sum, mut size) = (0.0, 0.0);
-        for i in 0..n {
-            for j in 0..n {
-                let curvature = family.second(y, p, (&part(i), &part(j)));
-                sum += psi.dot(&curvature);
-                size += curvature.norm();
+        let (mut sum, mut squares) = (0.0_f64, Matrix::zeros(n, n));
+        for second in family.field(p).second_derivatives(y) {
+            for (i, j) in second.orders() {
+                let part = phi[i] * phi[j] * second.value;
+                sum += psi[second.of] * part;
+                squares[(i, j)] += part * part;
             }
         }
-        (sum, size)
+        (sum, squares.map(f64::sqrt).sum())
     };
     // Of an odd function these are zero with the coefficient.
     let (sum, here) = at(&y);
@@ -203,13 +202,9 @@ fn derivatives(family: &FieldEquilibria<'_>, u: &Vector) -> Matrix {
         all[(i, n + 2 + i)] = beta;
     }
     // psi . (f_y, f_p), in y, in p and in psi.
-    let units = (0..n).map(|i| Vector::from_fn(n, |k, _| f64::from(u8::from(i == k))));
-    let units: Vec<_> = units.collect();
-    for j in 0..n {
-        for k in j..n {
-            let curvature = psi.dot(&family.second(&y, p, (&units[j], &units[k])));
-            all[(n + j, k)] = curvature;
-            all[(n + k, j)] = curvature;
+    for second in family.field(p).second_derivatives(&y) {
+        for (i, j) in second.orders() {
+            all[(n + i, j)] += psi[second.of] * second.value;
         }
     }
     let h = CHANGE * (1.0 + p.abs());

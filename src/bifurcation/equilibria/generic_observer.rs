@@ -187,6 +187,23 @@ impl EquilibriumObserver<'_, '_> {
         (second, ALIKE * second)
     }
 
+    /// Whether so far ahead along the tangent two singular values are much less than the second least one is here, as they are near a multiple branch
+    /// point: to look for one takes long where there are many variables.
+    fn several_vanish(&self, point: &CurvePoint, ahead: f64, second: f64) -> bool {
+        const FALLEN: f64 = 0.5;
+        let n = point.u.len();
+        let there = point.u.push(point.lambda) + &point.tangent * ahead;
+        let rows = self
+            .family
+            .extended(&there.rows(0, n).into_owned(), there[n]);
+        let values = singular_values(rows, [false, false]).map(|of| of.singular_values);
+        let fallen = values
+            .iter()
+            .flatten()
+            .filter(|value| **value < FALLEN * second);
+        fallen.count() > 1
+    }
+
     /// A multiple branch point that the branch comes to straight from here, and whether it turns back there: the parameter then depends on the way to it
     /// by an even power. [`EquilibriumObserver::falling`], which may keep its sign there, has fallen since the point before.
     fn look_ahead(&mut self, point: &CurvePoint) -> Option<(MultiplePoint, bool)> {
@@ -199,6 +216,9 @@ impl EquilibriumObserver<'_, '_> {
         let (before, from) = self.fallen.replace((value, here))?;
         let left = value * (here - from) / (before - value);
         if !(left >= 0.0 && left < AHEAD * self.longest) {
+            return None;
+        }
+        if is_large(n) && !self.several_vanish(point, left, value) {
             return None;
         }
         let found = MultiplePoint::near(self.family, &point.u, point.lambda, small)?;

@@ -191,15 +191,9 @@ impl Unknowns<'_, '_> {
         let block = n + 1 + m;
         let mut all = Matrix::zeros(n + m * block, n + 1 + m * n);
         all.view_mut((0, 0), (n, n + 1)).copy_from(&extended);
-        let unit = |i: usize| Vector::from_fn(n, |k, _| f64::from(u8::from(i == k)));
-        for i in 0..n {
-            for j in i..n {
-                let curvature = self.family.second(&y, p, (&unit(i), &unit(j)));
-                for k in 0..m {
-                    let of_left = left.column(k).dot(&curvature);
-                    all[(n + k * block + i, j)] = of_left;
-                    all[(n + k * block + j, i)] = of_left;
-                }
+        for second in self.family.field(p).second_derivatives(&y) {
+            for (k, (i, j)) in (0..m).flat_map(|k| second.orders().map(move |pair| (k, pair))) {
+                all[(n + k * block + i, j)] += left[(second.of, k)] * second.value;
             }
         }
         for k in 0..m {
@@ -238,8 +232,10 @@ fn refined(
     let mut last = f64::INFINITY;
     for _ in 0..ITERATIONS {
         let made = unknowns.derivatives(&u).qr();
-        let right = made.q().transpose() * unknowns.residual(&u);
-        let step = made.r().solve_upper_triangular(&right)?;
+        let mut right = unknowns.residual(&u);
+        made.q_tr_mul(&mut right);
+        let right = right.rows(0, u.len()).into_owned();
+        let step = made.unpack_r().solve_upper_triangular(&right)?;
         let size = relative(&step, &u);
         if !size.is_finite() {
             return None;

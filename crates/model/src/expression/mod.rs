@@ -8,9 +8,11 @@ mod function;
 mod own_factor;
 mod ratios;
 mod signed_powers;
+mod sparsity;
 mod units;
 
 pub use function::Function;
+pub use sparsity::ColumnGroups;
 
 use crate::error::{Error, Result};
 use crate::number::{Balance, Numerator, Real};

@@ -1,9 +1,10 @@
 //! A system whose equations are read when the program runs, as a vector field: everything from its formulas.
 
 use crate::error::{Error, Result};
-use crate::expression::Expressions;
+use crate::expression::{ColumnGroups, Expressions};
 use crate::field::{
-    Analytic, ExactField, Jacobian, Parametrised, State, VectorField, jacobian_of_rows, state,
+    Analytic, ExactField, Jacobian, Parametrised, SecondDerivative, State, VectorField,
+    jacobian_of_rows, state,
 };
 use crate::number::{DoubleDouble, Interval, Jet, Real};
 use crate::series::{ByRecording, Jet3, RecordedExpressions, Solution, Tangent, TaylorMap};
@@ -18,6 +19,8 @@ const AT_ONCE: usize = 4;
 #[derive(Debug, Clone, PartialEq)]
 pub struct TextSystem {
     rates: Arc<Expressions>,
+    /// Variables along which the rates are differentiated together.
+    columns: Arc<ColumnGroups>,
     slip_rates: Option<Arc<Expressions>>,
     states: Vec<&'static str>,
     /// Whether the formulas name time: it is then one variable more, the last, and its rate is 1.
@@ -44,6 +47,7 @@ impl TextSystem {
             return Err(Error::parameter("the number of states", states.len(), must));
         }
         Ok(TextSystem {
+            columns: Arc::new(rates.column_groups(rates.count())),
             rates: Arc::new(rates),
             slip_rates: None,
             states: states.iter().map(|name| kept(name)).collect(),
@@ -152,6 +156,7 @@ impl TextSystem {
         let signs: Vec<f64> = signs.iter().copied().chain(of_time).collect();
         let rates = self.rates.in_logarithms(&signs, self.names.len())?;
         Ok(rates.map(|rates| TextSystem {
+            columns: Arc::new(rates.column_groups(rates.count())),
             rates: Arc::new(rates),
             ..self.clone()
         }))
@@ -255,18 +260,21 @@ impl TextSystem {
     pub fn jacobian<T: Real>(&self, x: &[T]) -> Vec<T> {
         let n = self.variables();
         let mut all = vec![T::constant(0.0); n * n];
-        for first in (0..n).step_by(AT_ONCE) {
+        for first in (0..self.columns.count()).step_by(AT_ONCE) {
             let along = |(j, &value): (usize, &T)| {
-                let here = |i: usize| T::constant(f64::from(u8::from(first + i == j)));
+                let seed = |lane: usize| T::constant(self.columns.seed(j, first + lane));
                 Jet {
                     value,
-                    gradient: std::array::from_fn::<T, AT_ONCE, _>(here),
+                    gradient: std::array::from_fn::<T, AT_ONCE, _>(seed),
                 }
             };
             let x: Vec<_> = x.iter().enumerate().map(along).collect();
             for (i, rate) in self.rates(&x).into_iter().enumerate() {
-                for (j, slope) in (first..n).zip(rate.gradient) {
-                    all[i * n + j] = slope;
+                for &(group, j) in self.columns.row(i) {
+                    if let Some(slope) = group.checked_sub(first).and_then(|k| rate.gradient.get(k))
+                    {
+                        all[i * n + j] = *slope;
+                    }
                 }
             }
         }
@@ -345,22 +353,55 @@ impl TextSystem {
         rates.map(|f| f.gradient[0]).collect()
     }
 
-    /// The derivative in the parameter of that in the variable.
-    fn mixed_derivative(&self, y: &[f64], variable: usize, place: usize) -> Vec<f64> {
+    /// All second derivatives of the rates that the formulas don't show to be zero.
+    fn second_derivatives(&self, y: &[f64]) -> Vec<SecondDerivative> {
+        let (n, groups) = (self.variables(), self.columns.count());
+        let mut all = Vec::new();
+        for (a, b) in (0..groups).flat_map(|a| (a..groups).map(move |b| (a, b))) {
+            let [u, v] = [a, b]
+                .map(|group| -> Vec<f64> { (0..n).map(|j| self.columns.seed(j, group)).collect() });
+            let values = self.second_derivative([y, &u, &v]);
+            for (of, value) in values.into_iter().enumerate() {
+                let variable = |group: usize| {
+                    let mut row = self.columns.row(of).iter();
+                    row.find(|entry| entry.0 == group).map(|entry| entry.1)
+                };
+                if let (Some(i), Some(j)) = (variable(a), variable(b)) {
+                    all.push(SecondDerivative {
+                        of,
+                        by: [i, j],
+                        value,
+                    });
+                }
+            }
+        }
+        all
+    }
+
+    /// The derivative of the Jacobian in a parameter, row by row.
+    fn parameter_jacobian(&self, y: &[f64], place: usize) -> Vec<f64> {
         let fixed = |value: Jet<f64, 1>| Jet {
             value,
             gradient: [single(0.0, 0.0)],
         };
-        let one = |at: usize, i: usize| f64::from(u8::from(at == i));
-        let along = |(i, &y): (usize, &f64)| fixed(single(y, one(i, variable)));
-        let x: Vec<_> = y.iter().enumerate().map(along).collect();
         let beside = |(q, &p): (usize, &f64)| Jet {
             value: single(p, 0.0),
-            gradient: [single(one(q, place), 0.0)],
+            gradient: [single(f64::from(u8::from(q == place)), 0.0)],
         };
         let parameters: Vec<_> = self.parameters.iter().enumerate().map(beside).collect();
-        let rates = self.rates.evaluate(&x, &parameters).into_iter();
-        rates.map(|f| f.gradient[0].gradient[0]).collect()
+        let n = self.variables();
+        let mut all = vec![0.0; n * n];
+        for group in 0..self.columns.count() {
+            let along = |(j, &y): (usize, &f64)| fixed(single(y, self.columns.seed(j, group)));
+            let x: Vec<_> = y.iter().enumerate().map(along).collect();
+            let rates = self.rates.evaluate(&x, &parameters);
+            for (i, rate) in rates.iter().enumerate() {
+                for &(_, j) in self.columns.row(i).iter().filter(|entry| entry.0 == group) {
+                    all[i * n + j] = rate.gradient[0].gradient[0];
+                }
+            }
+        }
+        all
     }
 }
 
@@ -466,6 +507,10 @@ impl<const N: usize> VectorField<N> for TextField<'_, N> {
         Some(self.system.series_along(curve).map(|rates| state(&rates)))
     }
 
+    fn second_derivatives(&self, y: &State<N>) -> Vec<SecondDerivative> {
+        self.system.second_derivatives(self.variables(y))
+    }
+
     fn exact(&self, y: &State<N>) -> Option<ExactField<N>> {
         /// What is left of the error of doubles, which intervals bound.
         const OF_DOUBLES: f64 = 2.0 * f64::EPSILON;
@@ -533,10 +578,7 @@ impl<const N: usize> Parametrised<N> for TextField<'_, N> {
 
     fn parameter_jacobian(&self, y: &State<N>, place: usize) -> Jacobian<N> {
         let y = self.variables(y);
-        let column = |j: usize| self.system.mixed_derivative(y, j, place);
-        let columns: Vec<f64> = (0..y.len()).flat_map(column).collect();
-        // What were rows are the columns.
-        self.matrix(&columns).transpose()
+        self.matrix(&self.system.parameter_jacobian(y, place))
     }
 }
 

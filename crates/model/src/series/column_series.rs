@@ -8,6 +8,9 @@ use super::program::Source;
 use super::program_rows::ProgramRows;
 use pulp::NullaryFnOnce;
 
+/// Chunks whose sums are made at once, out of one read of the Jacobian.
+const TOGETHER: usize = 4;
+
 /// An entry of the Jacobian, or of the derivatives in parameters, that is not zero everywhere.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct JacobianEntry {
@@ -104,8 +107,16 @@ impl<T: Element, X: Element> NullaryFnOnce for ExpandColumns<'_, T, X> {
             let next = &mut rest[..width];
             for (i, sums) in next.chunks_exact_mut(chunks).enumerate() {
                 let of_row = of_row(jacobian, i);
-                for (c, sum) in sums.iter_mut().enumerate() {
-                    *sum = sum_over((of_row, rows), &known[c..], (k, width, chunks), any);
+                let at = (k, width, chunks);
+                let mut c = 0;
+                while c + TOGETHER <= chunks {
+                    let made = sums_over::<T, X, TOGETHER>((of_row, rows), &known[c..], at, any);
+                    sums[c..c + TOGETHER].copy_from_slice(&made);
+                    c += TOGETHER;
+                }
+                while c < chunks {
+                    [sums[c]] = sums_over((of_row, rows), &known[c..], at, any);
+                    c += 1;
                 }
             }
             for entry in forcing {
@@ -136,71 +147,87 @@ fn of_row(jacobian: &[JacobianEntry], i: usize) -> &[JacobianEntry] {
     &all[..all.partition_point(|entry| entry.place.0 == i)]
 }
 
-/// The k-th coefficient of a row of the Jacobian times the columns of a chunk, whose coefficients stand `width` apart: the products with
+/// The k-th coefficients of a row of the Jacobian times the columns of B chunks, whose coefficients stand `width` apart: the products with
 /// all but the last two coefficients of the columns in two sums, which do not wait for each other; then those with the last but one, and
 /// with the newest in two sums again.
 #[inline(always)]
-fn sum_over<T: Element, X: Element>(
+fn sums_over<T: Element, X: Element, const B: usize>(
     (of_row, rows): (&[JacobianEntry], &ProgramRows<T>),
     known: &[X],
     (k, width, chunks): (usize, usize, usize),
     any: X,
-) -> X {
+) -> [X; B] {
     let zero = any.like(0.0);
-    let (mut even, mut odd) = (zero, zero);
+    let (mut sums, mut others) = ([zero; B], [zero; B]);
     for entry in of_row {
         if let Source::Row(row) = entry.series {
             let a = &rows.row(row)[..=k];
             let column = &known[entry.place.1 * chunks..];
-            (even, odd) = add_older(a, column, width, (even, odd));
+            add_older(a, column, width, (&mut sums, &mut others));
         }
     }
-    let mut sum = even + odd;
+    for b in 0..B {
+        sums[b] = sums[b] + others[b];
+    }
     if k > 0 {
         for entry in of_row {
             if let Source::Row(row) = entry.series {
                 let a = any.like_exact(rows.row(row)[1].to_exact());
-                let column = known[(k - 1) * width + entry.place.1 * chunks];
-                sum = a.mul_add(column, sum);
+                let column = &known[(k - 1) * width + entry.place.1 * chunks..];
+                add_product(&mut sums, a, column);
             }
         }
     }
-    let mut other = zero;
+    others = [zero; B];
     for (place, entry) in of_row.iter().enumerate() {
         let a = match entry.series {
             Source::Number(a) => any.like_exact(a),
             Source::Row(row) => any.like_exact(rows.row(row)[0].to_exact()),
         };
-        let column = known[k * width + entry.place.1 * chunks];
+        let column = &known[k * width + entry.place.1 * chunks..];
         if place % 2 == 0 {
-            sum = a.mul_add(column, sum);
+            add_product(&mut sums, a, column);
         } else {
-            other = a.mul_add(column, other);
+            add_product(&mut others, a, column);
         }
     }
-    sum + other
+    for b in 0..B {
+        sums[b] = sums[b] + others[b];
+    }
+    sums
 }
 
-/// Adds a_l b_(k-l) for l from k to 2, of a column whose coefficients stand `width` apart, to two sums in turn.
+/// Adds a times so many columns.
 #[inline(always)]
-fn add_older<T: Element, X: Element>(
+fn add_product<X: Element, const B: usize>(sums: &mut [X; B], a: X, columns: &[X]) {
+    let columns = &columns[..B];
+    for b in 0..B {
+        sums[b] = a.mul_add(columns[b], sums[b]);
+    }
+}
+
+/// Adds a_l b_(k-l) for l from k to 2, of columns whose coefficients stand `width` apart, to two sums in turn.
+#[inline(always)]
+fn add_older<T: Element, X: Element, const B: usize>(
     a: &[T],
     column: &[X],
     width: usize,
-    (mut even, mut odd): (X, X),
-) -> (X, X) {
+    (even, odd): (&mut [X; B], &mut [X; B]),
+) {
+    let any = column[0];
     let k = a.len() - 1;
     let mut l = k;
     while l > 2 {
         let (first, second) = (a[l].to_exact(), a[l - 1].to_exact());
-        let (b, next) = (column[(k - l) * width], column[(k - l + 1) * width]);
-        even = b.like_exact(first).mul_add(b, even);
-        odd = b.like_exact(second).mul_add(next, odd);
+        add_product(even, any.like_exact(first), &column[(k - l) * width..]);
+        add_product(odd, any.like_exact(second), &column[(k - l + 1) * width..]);
         l -= 2;
     }
     if l == 2 {
-        let b = column[(k - 2) * width];
-        even = b.like_exact(a[2].to_exact()).mul_add(b, even);
+        add_product(
+            even,
+            any.like_exact(a[2].to_exact()),
+            &column[(k - 2) * width..],
+        );
     }
-    (even, odd)
 }
