@@ -336,7 +336,11 @@ fn systems_tell_their_text_and_a_section() {
     assert!(names(&oscillator, "loci").is_empty());
     let forced = described("--system=duffing");
     assert_eq!(forced["surface"], Value::Null);
-    assert!(names(&forced, "loci").is_empty());
+    // Nothing rests under a forcing, and its orbits have a multiplier for each variable.
+    assert_eq!(forced["rests"], false);
+    assert_eq!(told["rests"], true);
+    let of_orbits = ["orbit-saddle-node", "period-doubling", "torus"];
+    assert_eq!(names(&forced, "loci"), of_orbits);
     let none = "name = \"n\"\nstates = [\"x\"]\n[parameters]\np = 0\nq = -1.5 # below 0\n[rates]\nx = \"p + q*x\"\n";
     let none = described_by(&[format!("--system={none}")]);
     assert_eq!(none["surface"], Value::Null);

@@ -223,6 +223,23 @@ def test_a_built_in_system_and_own_equations(slab, explored):
     assert page.value("twinslip.model.parameters.length") == 2
 
 
+def test_a_forced_system_has_no_equilibria(served, explored):
+    page = explored(served("--system", "duffing").address)
+    page.idle(curves=True)
+    # Holmes (1979) has chaos at these parameters.
+    verdict = page.pane("verdict")
+    assert verdict.locator(".headline").inner_text().lower() == "chaotic"
+    assert "equilibri" not in page.page.inner_text("body")
+    assert page.value("[...twinslip.engine.current.keys()].filter((slot) => slot.includes('equilibria'))") == []
+    # As many multipliers as variables: their product is exp(-delta T).
+    orbit = page.answer("orbit:0")["object"]["result"]["orbit"]
+    logs = [one["ln_abs"]["value"] for one in orbit["log_multipliers"]]
+    assert sum(logs) == pytest.approx(-0.25 * 2 * 3.141592653589793, rel=1e-9)
+    assert page.pane("spectrum").locator("tbody tr").count() == 2
+    assert page.answer("locus:period-doubling")["rows"]
+    page.shot("duffing")
+
+
 def test_a_server_of_an_own_system(served, explored, tmp_path):
     (tmp_path / "own.toml").write_text(OWN)
     page = explored(served("--system", str(tmp_path / "own.toml")).address)

@@ -57,7 +57,7 @@ const MORE_TEXTS: [&str; 5] = ["hold", "surface", "symmetry", "time-unit", "watc
 /// Options of files that are switches here: what they name goes into the answer.
 const INTO_THE_ANSWER: [&str; 3] = ["events", "participation", "plot"];
 /// Options of files whose content may be given.
-const CONTENTS: [&str; 4] = ["ensemble", "law", "program", "system"];
+const CONTENTS: [&str; 5] = ["begin", "ensemble", "law", "program", "system"];
 /// Options that have no meaning in a request, or are decided by the server.
 pub const REFUSED: [&str; 12] = [
     "checkpoint",
@@ -245,6 +245,12 @@ fn content(name: &str, plain: &str, text: &str) -> Result<String, Error> {
         if !text.contains('\n') {
             return wrong(name, "must be the text of a fit, and can't be a file here");
         }
+    }
+    if plain == "begin" && !text.contains('\n') {
+        return wrong(
+            name,
+            "must be the text of a file of special points, a colon and the number of a row, and can't be a file here",
+        );
     }
     if text.contains('\n') || plain == "program" {
         return Ok(text.to_owned());

@@ -13,6 +13,8 @@ use std::thread;
 use std::time::Duration;
 use twinslip::error::Result;
 
+/// Steps of a run of a user-defined system, at least.
+const STEPS: f64 = 600.0;
 /// Between two looks at what is done.
 const GLANCE: Duration = Duration::from_millis(10);
 
@@ -157,20 +159,32 @@ impl Scene<'_> {
         format!("{name}={}:{}", shown(&json!(least)), shown(&json!(end(1))))
     }
 
+    /// Whether there may be equilibria.
+    fn rests(&self) -> bool {
+        self.model["rests"] == true
+    }
+
     /// What says how long a run is shown.
     fn first(&self) -> Vec<Asked> {
         let orbit = with(self.system(&[]), [("crosscheck", json!("none"))]);
-        vec![
-            ("equilibria:0".into(), "equilibria", self.system(&[])),
-            ("orbit:0".into(), "orbit", orbit),
-        ]
+        let mut all: Vec<Asked> = vec![("orbit:0".into(), "orbit", orbit)];
+        if self.rests() {
+            all.insert(0, ("equilibria:0".into(), "equilibria", self.system(&[])));
+        }
+        all
     }
 
     fn rest(&self, until: Option<f64>) -> Vec<Asked> {
         let mut all: Vec<Asked> = Vec::new();
         if let Some(until) = until {
-            let run = [("until", json!(until)), ("plot", json!(true))];
-            all.push(("run:0".into(), "integrate", with(self.system(&[]), run)));
+            let mut run = with(
+                self.system(&[]),
+                [("until", json!(until)), ("plot", json!(true))],
+            );
+            if self.model["kind"] == "system" {
+                run.insert("max_step".into(), json!(to_three_digits(until / STEPS)));
+            }
+            all.push(("run:0".into(), "integrate", run));
         }
         let section = [
             ("returns", json!(600)),
@@ -186,7 +200,12 @@ impl Scene<'_> {
         ));
         let axes = self.axes();
         for (which, along) in ["x", "y"].into_iter().zip(&axes) {
-            for of in ["equilibria", "orbits"] {
+            let kinds: &[&str] = if self.rests() {
+                &["equilibria", "orbits"]
+            } else {
+                &["orbits"]
+            };
+            for of in kinds {
                 let options = [("of", json!(of)), ("along", json!(self.range(along)))];
                 all.push((
                     format!("branch:{which}:{of}"),
@@ -258,7 +277,7 @@ impl Scene<'_> {
         let lines = all
             .get("run:0")?
             .as_array()
-            .filter(|_| self.model["kind"] == "system")?;
+            .filter(|_| self.model["kind"] == "system" && self.rests())?;
         let columns = lines
             .iter()
             .find_map(|line| line.get("columns"))?
@@ -302,6 +321,11 @@ fn with<const N: usize>(mut options: Options, more: [(&str, Value); N]) -> Optio
 /// A number as a page writes it.
 fn shown(number: &Value) -> String {
     number.as_number().map_or_else(String::new, number_text)
+}
+
+/// The longest step of a run as the page has it.
+fn to_three_digits(x: f64) -> f64 {
+    format!("{x:.2e}").parse().unwrap_or(x)
 }
 
 /// Two digits are enough for what is only shown.

@@ -6,10 +6,12 @@ use super::general::{RowKind, by_name, user_functions};
 use super::system::System;
 use super::units::{Quantity, Units};
 use serde_json::{Value, json};
+use twinslip::bifurcation::equilibria::generic_curve::EquilibriumBifurcation;
+use twinslip::bifurcation::general::GeneralBifurcation;
 use twinslip::bifurcation::{EventObserver, LocusKind, LocusRequest, equilibria, orbits};
 use twinslip::error::{Error, Result, option_name};
 use twinslip::model::Loading;
-use twinslip::orbit::InterfaceSystem;
+use twinslip::orbit::{InterfaceSystem, TestFunction};
 use twinslip::sweep::fields;
 
 /// A curve that can be asked for.
@@ -105,6 +107,24 @@ pub struct LocusPlan {
 }
 
 impl CurveChoice {
+    /// All.
+    pub(super) const ALL: [CurveChoice; CURVES.len()] = CURVES;
+
+    /// What bifurcates along it, of any system.
+    pub fn bifurcation(&self) -> Option<GeneralBifurcation> {
+        use GeneralBifurcation::{Equilibrium, Homoclinic, Orbit};
+        self.kind.map(|kind| match kind {
+            LocusKind::SaddleNode => Equilibrium(EquilibriumBifurcation::Fold),
+            LocusKind::Pitchfork => Equilibrium(EquilibriumBifurcation::Pitchfork),
+            LocusKind::Hopf => Equilibrium(EquilibriumBifurcation::Hopf),
+            LocusKind::OrbitPitchfork => Orbit(TestFunction::Transverse),
+            LocusKind::OrbitSaddleNode => Orbit(TestFunction::Fold),
+            LocusKind::PeriodDoubling => Orbit(TestFunction::Doubling),
+            LocusKind::Torus => Orbit(TestFunction::Torus),
+            LocusKind::Homoclinic => Homoclinic,
+        })
+    }
+
     /// The names of all.
     pub(super) const NAMES: [&'static str; CURVES.len()] = {
         let mut names = [""; CURVES.len()];
@@ -144,6 +164,16 @@ impl CurveChoice {
             .filter(occurs)
             .map(|curve| curve.name)
             .collect()
+    }
+
+    /// The names of those of a system of so many variables under a periodic forcing, in which nothing rests.
+    pub(super) fn of_forced(variables: usize) -> Vec<&'static str> {
+        let mut all = Self::of_system(variables + 1, false, [false; 2]);
+        all.retain(|name| {
+            let of_name = CURVES.iter().find(|curve| curve.name == *name);
+            of_name.is_some_and(|curve| curve.orbits && curve.kind != Some(LocusKind::Homoclinic))
+        });
+        all
     }
 
     /// The names of those of equilibria, with pitchforks where there is a symmetry that they break.

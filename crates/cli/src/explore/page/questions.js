@@ -99,7 +99,8 @@ export class Questions {
       if (this.again) this.dragged();
     };
     panes.verdict.moved();
-    const known = { equilibria: null, orbit: null };
+    // Under a periodic forcing nothing rests.
+    const known = { equilibria: model.rests ? null : {}, orbit: null };
     let until = null;
     const run = () => {
       const kept = dragged && !known.orbit?.ended && !scene.until ? panes.until : null;
@@ -120,7 +121,7 @@ export class Questions {
             panes.run.takeRun(answer);
             panes.portrait.takeRun(answer);
             answered();
-            if (answer.ended && model.kind === "system") this.askAround(index, answer);
+            if (answer.ended && model.kind === "system" && model.rests) this.askAround(index, answer);
           }
         },
       });
@@ -136,6 +137,19 @@ export class Questions {
         if (!scene.until && panes.ticket === ticket && (known.equilibria || answer.ended)) run();
       },
     });
+    const waits = () => {
+      if (known.orbit) return run();
+      setTimeout(() => {
+        if (panes.ticket === ticket && !until) run();
+      }, PATIENCE);
+    };
+    if (!model.rests) {
+      for (const pane of [panes.spectrum, panes.portrait]) pane.takeEquilibria(null);
+      answered();
+      if (scene.until || (dragged && panes.until)) run();
+      else waits();
+      return;
+    }
     // What takes least is asked last, and begun first.
     const wanted = requests.equilibria(scene, model, index, this.boxes[index]?.of === model ? this.boxes[index].box : null);
     engine.ask(`equilibria:${index}`, wanted.command, wanted.options, {
@@ -145,11 +159,7 @@ export class Questions {
         for (const pane of [panes.spectrum, panes.portrait]) pane.takeEquilibria(answer);
         panes.verdict.takeAnswer("equilibria", answer);
         answered();
-        if (scene.until) return;
-        if (known.orbit) return run();
-        setTimeout(() => {
-          if (panes.ticket === ticket && !until) run();
-        }, PATIENCE);
+        if (!scene.until) waits();
       },
     });
     // Amid a drag the run goes as far as the one before, until more is known.
@@ -202,7 +212,7 @@ export class Questions {
   askBranch(which) {
     const { scene, model, engine, alongs } = this.app;
     const along = scene.axes[which];
-    for (const of of ["equilibria", "orbits"]) {
+    for (const of of model.rests ? ["equilibria", "orbits"] : ["orbits"]) {
       const { command, options } = requests.branch(scene, model, scene.active, of, along);
       engine.ask(`branch:${which}:${of}`, command, options, {
         background: true,

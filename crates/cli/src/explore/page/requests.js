@@ -59,10 +59,15 @@ function orbit(scene, model, index) {
   return { command: "orbit", options };
 }
 
+/** Steps of a run, at least. */
+const STEPS = 600;
+
 /** A run in time, with its picture where that is wanted. */
 function run(scene, model, index, until, plot = true) {
   const options = { ...systemOptions(scene, model, index), until };
   if (plot) options.plot = true;
+  // Portraits join the rows: of steps that are long for their accuracy they would be polygons.
+  if (model.kind === "system") options.max_step = Number((until / STEPS).toPrecision(3));
   if (scene.start) options.start = listed(scene.start);
   if (scene.program && model.kind === "interfaces") options.program = scene.program;
   return { command: "integrate", options };

@@ -58,6 +58,7 @@ pub(super) fn described(options: &ModelOptions) -> Result<ModelDescription> {
         },
         interfaces: Some(count),
         loci: interfaces.loci(slab),
+        rests: interfaces.rest(),
         surface: None,
         duration: None,
         text: None,
@@ -171,6 +172,14 @@ impl Interfaces {
         Ok(declared.collect())
     }
 
+    /// Whether nothing that is modulated keeps them from rest.
+    fn rest(&self) -> bool {
+        match self {
+            Interfaces::Closed(_) => true,
+            Interfaces::Formulas(model) => model.system.phase().is_none(),
+        }
+    }
+
     /// The bifurcations that they may have: those of equilibria of many equal interfaces alone.
     fn loci(&self, slab: &SlabOptions) -> Vec<&'static str> {
         let count = slab.count() as usize;
@@ -193,6 +202,7 @@ impl Interfaces {
         let broken = [symmetric, symmetric && count == 2];
         match parts {
             _ if parts > MOST_INTERFACES => Vec::new(),
+            _ if !self.rest() => CurveChoice::of_forced(variables),
             _ if parts > MOST_APART => CurveChoice::of_equilibria(broken[0]),
             // A single one has one steady state.
             _ => {

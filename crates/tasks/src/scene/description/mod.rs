@@ -36,6 +36,8 @@ pub struct ModelDescription {
     pub interfaces: Option<u32>,
     /// The bifurcations that `locus` may find in a plane of two parameters.
     pub loci: Vec<&'static str>,
+    /// Whether it may rest: under a periodic forcing nothing does, and there are no equilibria.
+    pub rests: bool,
     /// A section for `section`, STATE=VALUE; `None` where its default will do, or where a system comes to rest.
     pub surface: Option<String>,
     /// How long a run from the system's own start may be shown, where its equilibria and orbits do not say; `None` where these do.

@@ -42,11 +42,15 @@ pub(super) fn described(options: &ModelOptions, path: &Path) -> Result<ModelDesc
         label: name.to_owned(),
         unit: None,
     });
-    // Branches and sections do not take formulas of time.
+    // Branches and sections take formulas of time that are periodic in it, and no others.
     let timed = system.is_timed();
-    let loci = match timed || parameters.len() < 2 {
-        true => Vec::new(),
-        false => CurveChoice::of_system(system.states().len(), true, [false; 2]),
+    let rests = system.phase().is_none();
+    let variables = system.states().len();
+    let loci = match () {
+        () if parameters.len() < 2 => Vec::new(),
+        () if !rests => CurveChoice::of_forced(variables),
+        () if timed => Vec::new(),
+        () => CurveChoice::of_system(variables, true, [false; 2]),
     };
     Ok(ModelDescription {
         kind: ModelKind::System,
@@ -57,6 +61,7 @@ pub(super) fn described(options: &ModelOptions, path: &Path) -> Result<ModelDesc
         symmetries: Vec::new(),
         interfaces: None,
         loci,
+        rests,
         surface: match timed {
             true => None,
             false => surface(&model),

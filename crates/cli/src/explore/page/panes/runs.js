@@ -152,7 +152,7 @@ export class PortraitPane extends Pane {
   }
 
   takeEquilibria(answer) {
-    this.states = answer.error ? [] : (answer.result?.equilibria ?? []);
+    this.states = answer?.error ? [] : (answer?.result?.equilibria ?? []);
     if (this.answer && !this.answer.error) this.compose();
   }
 
@@ -276,7 +276,8 @@ export class ReturnsPane extends Pane {
   }
 
   takeSection(answer) {
-    this.surface.placeholder = this.app.model.surface ?? "stress=auto";
+    const { rests, surface } = this.app.model;
+    this.surface.placeholder = rests ? (surface ?? "stress=auto") : "each period";
     if (document.activeElement !== this.surface) this.surface.value = this.app.scene.surface ?? "";
     if (!this.take(answer)) return;
     const picture = answer.pictures.at(-1);

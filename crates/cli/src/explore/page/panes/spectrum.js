@@ -9,10 +9,12 @@ const SYMBOLS = ["circle", "square", "diamond", "triangle", "star"];
 /** Equilibria beyond these have no symbol of their own. */
 const DRAWN = 5;
 
-/** The multipliers of an orbit, each with its name, value and what is known of its size. */
+/** The nontrivial multipliers of an orbit, each with its value and what is known of its size. Under a forcing none is trivial. */
 function multipliersOf(orbit) {
-  return (orbit?.log_multipliers ?? []).map((one, i) => ({
-    value: orbit.multipliers?.[i + 1] ?? null,
+  const logs = orbit?.log_multipliers ?? [];
+  const first = (orbit?.multipliers?.length ?? 0) - logs.length;
+  return logs.map((one, i) => ({
+    value: orbit.multipliers?.[first + i] ?? null,
     log: one.ln_abs,
     most: one.ln_abs_at_most,
     angle: one.angle_over_pi,
@@ -29,11 +31,12 @@ export class SpectrumPane extends Pane {
   }
 
   takeEquilibria(answer) {
-    this.states = answer.error ? [] : (answer.result?.equilibria ?? []);
-    if (this.take(answer)) this.compose();
+    this.states = answer?.error ? [] : (answer?.result?.equilibria ?? []);
+    if (answer && this.take(answer)) this.compose();
   }
 
   takeOrbit(answer) {
+    if (!this.app.model.rests && answer) this.take(answer);
     this.orbit = answer?.error ? null : (answer?.result?.orbit ?? null);
     this.orbitAnswer = answer;
     this.compose();

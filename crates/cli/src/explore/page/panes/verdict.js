@@ -104,7 +104,7 @@ export class VerdictPane extends Pane {
 
   takeAnswer(what, answer) {
     this.answers[what] = answer;
-    if (what === "equilibria") this.take(answer);
+    if (what === (this.app.model.rests ? "equilibria" : "orbit")) this.take(answer);
     this.answer = this.answers.section ?? this.answers.orbit ?? this.answers.equilibria ?? answer;
     this.write();
   }
