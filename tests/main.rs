@@ -28,6 +28,7 @@ mod codimension_two;
 mod continuation;
 mod curves_equilibria;
 mod curves_orbits;
+mod curves_that_begin;
 #[cfg(feature = "sundials")]
 mod cvode_integrator;
 mod damping;
@@ -87,6 +88,7 @@ mod jacobian_differences;
 #[cfg(target_arch = "x86_64")]
 mod kernels;
 mod lanes;
+mod large;
 mod law_bifurcations;
 mod law_data;
 mod law_parameters;

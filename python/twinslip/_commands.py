@@ -635,6 +635,7 @@ class Commands:
         at_stiffness: Text = None,
         criticality: bool = False,
         within: Text = None,
+        begin: Text = None,
         hold: Text = None,
         range: Text = None,
         at: Text = None,
@@ -677,6 +678,11 @@ class Commands:
         within : (str, str), optional
             The two free parameters by name, each with a range if needed: NAME1=A:B,NAME2=C:D
             [default: driving,stiffness]
+        begin : str, number or sequence, optional
+            Begin at a point of codimension two, FILE.special.csv:ROW, a row (from 1) of the
+            special points of an earlier locus: follow the curves that leave it (CP: saddle-node;
+            BT: saddle-node, hopf, homoclinic; GH: hopf, orbit-saddle-node; ZH: saddle-node, hopf,
+            torus; HH: hopf, torus). The plane and the ranges are those of the file unless given
         hold : str, optional
             Of orbits: follow those along which this expression, as of ``watch``, is zero, or has
             this value: "period = 20", "x_max - x_min = 3"

@@ -2,6 +2,7 @@
 //!
 //! Everything found is handed on as soon as it is known, as an [`Event`]: what was computed before an interruption is not lost.
 
+mod begin;
 pub mod equilibria;
 pub mod general;
 mod homoclinic;
@@ -17,6 +18,7 @@ use crate::orbit::InterfaceSystem;
 use std::ops::ControlFlow;
 
 pub use crate::model::Parameter;
+pub use begin::curves_that_leave;
 use user_function::zero_note;
 pub use user_function::{ProfileFunction, UserFunction};
 
@@ -315,6 +317,8 @@ pub struct Special {
     pub coefficient_uncertainty: Option<f64>,
     /// Why the branch ends here, or what else is to be said.
     pub note: Option<String>,
+    /// Of an orbit a point on it: (tau, ln psi) or (tau, ln psi_1, ln psi_2).
+    pub state: Option<Vec<f64>>,
     /// The orbit there, where it is one of an orbit: what a second method begins with.
     pub orbit: Option<orbits::SpecialOrbit>,
 }
@@ -333,6 +337,7 @@ impl Special {
             coefficient: None,
             coefficient_uncertainty: None,
             note: None,
+            state: None,
             orbit: None,
         }
     }

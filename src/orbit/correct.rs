@@ -444,7 +444,7 @@ impl<'a> Corrector<'a> {
     }
 
     /// A displacement of an orbit's nodes in their planes: moved along the flow.
-    pub(super) fn in_planes(&self, orbit: &Regular, displacement: &TangentVector) -> TangentVector {
+    pub(crate) fn in_planes(&self, orbit: &Regular, displacement: &TangentVector) -> TangentVector {
         let ContinuationPoint { shooting, at } = &orbit.site;
         let field = self.family.field(*at);
         orbit.linear.in_planes(&field, shooting, displacement)

@@ -6,6 +6,7 @@ use super::correct::Corrector;
 use super::goal::Goal;
 use super::orbit_curve::{Palc, PalcSettings};
 use super::shooting_nodes::ShootingNodes;
+use super::switch::Switch;
 use crate::error::Result;
 use crate::field::Vector;
 use crate::integrate::AnyField;
@@ -55,7 +56,7 @@ impl SmallOrbits {
 
     /// The ellipse of this size on which the linearised system turns, which is the first prediction of an orbit, and the direction in which
     /// it grows.
-    fn ellipse(&self, field: &AnyField<'_>, size: f64) -> (ContinuationPoint, TangentVector) {
+    pub(crate) fn ellipse(&self, field: &AnyField<'_>, size: f64) -> Switch {
         let along = &self.along;
         let across = field.jacobian(&self.state) * along / self.frequency;
         let scale = size / along.amax().max(across.amax());

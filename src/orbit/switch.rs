@@ -45,6 +45,20 @@ impl Regular {
         Some((site, tangent.normalised()?))
     }
 
+    /// Where another branch crosses this one: the orbit, and the direction in which the orbits of the other one leave it, but for its part along this one.
+    pub(crate) fn aside(&self, along: &TangentVector) -> Option<Switch> {
+        let round = cyclic::kernel(&self.linear.maps)?;
+        let (nodes, durations) = self.linear.carried(&round);
+        let kernel = TangentVector {
+            nodes,
+            durations,
+            parameters: [0.0; 2],
+        };
+        let kernel = kernel.normalised()?;
+        let part = kernel.dot(along) / along.dot(along);
+        Some((self.site.clone(), kernel.plus(-part, along).normalised()?))
+    }
+
     /// At a pitchfork: the orbit among all states, and the tangent vector in which both interfaces part. `None` where the arcs do
     /// not say how they do, and for orbits in other than two variables, which are no symmetric ones.
     pub fn asymmetric(&self) -> Option<Switch> {

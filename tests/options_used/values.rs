@@ -54,6 +54,8 @@ pub fn change(command: &str, kind: Kind, option: &str) -> Option<Change> {
         "format" | "output" | "force" | "quiet" | "explain" => Exempt,
         // Files of an earlier run: tests/durability_files.rs, tests/many.rs, tests/ensemble.rs.
         "resume" | "checkpoint" | "checkpoint-steps" | "ensemble" => Exempt,
+        // The same: tests/curves_that_begin.rs.
+        "begin" => Exempt,
         // They change how fast a sweep is, and no row.
         "threads" => Exempt,
         // Both come to the same digits, as its help says.

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use twinslip::error::Result;
 use twinslip_tasks::scene::{
     BranchOptions, Free, GeneralBranchPlan, GeneralFound, GeneralLocusPlan, GeneralRow,
-    LocusOptions, OutputOptions, Quantity, RowKind, Subject, shown,
+    LocusOptions, OutputOptions, Quantity, RowKind, SpecialRow, Subject, shown,
 };
 use twinslip_tasks::views;
 
@@ -37,8 +37,13 @@ pub fn branch(options: &BranchOptions, subject: &dyn Subject, call: &Call) -> Re
 }
 
 /// Curves in the plane of two parameters of any system.
-pub fn locus(options: &LocusOptions, subject: &dyn Subject, call: &Call) -> Result<Ending> {
-    let plan = GeneralLocusPlan::new(options, subject)?;
+pub fn locus(
+    options: &LocusOptions,
+    begin: Option<SpecialRow>,
+    subject: &dyn Subject,
+    call: &Call,
+) -> Result<Ending> {
+    let plan = GeneralLocusPlan::new(options, begin, subject)?;
     let files = (options.resume.as_ref(), options.plot.as_ref());
     let free = plan.free.each_ref();
     let frame = Frame::new(subject, plan.kind, &free);
@@ -82,15 +87,17 @@ struct Frame<'s> {
 impl<'s> Frame<'s> {
     fn new(subject: &'s dyn Subject, kind: RowKind, free: &[&Free]) -> Self {
         let names = shown(subject, free);
-        let numbers = subject.numbers(kind);
+        let (numbers, states) = (subject.numbers(kind), subject.states());
         let (of_rows, of_special, of_lines) = (names.clone(), names.clone(), names.clone());
         let units = subject.units();
         Frame {
             subject,
             kind,
             names,
-            read: Box::new(move |cell| GeneralRow::read(cell, units, &of_rows, &numbers)),
-            read_special: Box::new(move |cell| GeneralRow::read(cell, units, &of_special, &[])),
+            read: Box::new(move |cell| GeneralRow::read(cell, units, &of_rows, (&numbers, &[]))),
+            read_special: Box::new(move |cell| {
+                GeneralRow::read(cell, units, &of_special, (&[], &states))
+            }),
             lines: Box::new(move |special, checks| {
                 let columns = GeneralRow::special_columns(subject, &of_lines);
                 special::general_lines(special, &columns, checks, units)

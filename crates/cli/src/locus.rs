@@ -14,17 +14,25 @@ use twinslip_tasks::views;
 pub const CURVES: [&str; 2] = ["curve", "curves"];
 
 pub fn run(options: &LocusOptions, call: &Call) -> Result<Ending> {
+    let (options, begin) = options.beginning()?;
+    let options = &*options;
     if !options.by_shares()? {
         if let Some(model) = TextModel::of(
             &options.reference()?,
             &plane(options.plane.as_deref().unwrap_or("driving,stiffness"))?,
         )? {
-            let orbits = CurveChoice::named(options.of.as_deref())?.of_orbits();
-            let subject = TextSubject::new(model, &options.search, orbits)?;
-            return general::locus(options, &subject, call);
+            let (search, orbits) = match &begin {
+                None => (
+                    options.search.clone(),
+                    CurveChoice::named(options.of.as_deref())?.of_orbits(),
+                ),
+                Some(begin) => (begin.search(&model), begin.of_orbits()),
+            };
+            let subject = TextSubject::new(model, &search, orbits)?;
+            return general::locus(options, begin, &subject, call);
         }
         if let Some(subject) = options.any_parameter()? {
-            return general::locus(options, &subject, call);
+            return general::locus(options, begin, &subject, call);
         }
     }
     options.search.unused()?;

@@ -143,7 +143,17 @@ fn share(cell: &dyn Fn(&str) -> String) -> Option<[usize; 3]> {
 /// A special point from the cells of a CSV in the user's units.
 pub fn special_row(cell: &dyn Fn(&str) -> String, units: &Units) -> Option<Special> {
     let uncertain = |name: &str, quantity| uncertain(cell, units, name, quantity);
+    let number = |name: &str, quantity| {
+        let x: f64 = cell(name).parse().ok()?;
+        Some(units.inward(quantity, x))
+    };
+    let state = number("stress", Quantity::Stress).map(|stress| {
+        let states = ["state_1", "state_2"];
+        let states = states.map(|name| number(name, Quantity::State).map(f64::ln));
+        [Some(stress)].into_iter().chain(states).flatten().collect()
+    });
     Some(Special {
+        state,
         label: Label::named(&cell("label"))?,
         branch: cell("branch").parse().ok()?,
         symmetry: Symmetry::named(&cell("symmetry")),

@@ -276,7 +276,7 @@ impl<'a> Pieces<'a> {
         options: &LocusOptions,
         subject: SlabSubject,
     ) -> Result<Piece> {
-        let plan = GeneralLocusPlan::new(options, &subject)?;
+        let plan = GeneralLocusPlan::new(options, None, &subject)?;
         let (kind, names) = (plan.kind, shown(&subject, &plan.free.each_ref()));
         let voice = self.voice(name, plan.choice.title);
         let (rows, special) = self.followed(&voice, &names, |seen| plan.follow(&[], seen))?;

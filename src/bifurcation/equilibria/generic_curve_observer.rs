@@ -190,11 +190,11 @@ impl Observer<'_, '_> {
         Some(kernel.dot(&tangent) > ALONG)
     }
 
-    /// The function that is zero at a point, if there is one.
+    /// The function that is zero at a point, if there is one. The first of those of Hopf points is zero with the second.
     fn zero_at(&self, point: &CurvePoint) -> Option<usize> {
         const ZERO: f64 = 1e-14;
         let all = self.functions(&point.u.push(point.lambda), &point.tangent);
-        let found = all.ok()?.iter().position(|value| value.abs() < ZERO)?;
+        let found = all.ok()?.iter().rposition(|value| value.abs() < ZERO)?;
         self.sharp(found, point).map(|_| found)
     }
 

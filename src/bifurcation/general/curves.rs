@@ -6,6 +6,7 @@ use super::{
     GeneralSolution, GeneralSystem, SAME, Teller,
 };
 use crate::bifurcation::Label;
+use crate::bifurcation::begin::begun;
 use crate::bifurcation::equilibria::generic_curve::{
     EquilibriumBifurcation, EquilibriumCurve, EquilibriumCurvePoint, FirstCoordinate,
 };
@@ -36,12 +37,7 @@ pub fn equilibrium_curves(
     seen: GeneralObserver<'_>,
 ) -> Result<()> {
     let mut teller = Teller::new(seen, &curve.following);
-    let mut curves = EquilibriumCurves {
-        curve,
-        kind,
-        count: 0,
-        passes: Vec::new(),
-    };
+    let mut curves = EquilibriumCurves::new(curve, kind);
     // A curve along which the second is the same is not met along the first.
     for along in [0, 1] {
         for held in scanned(curve, 1 - along) {
@@ -56,6 +52,84 @@ pub fn equilibrium_curves(
         }
     }
     teller.end()
+}
+
+/// The curves through these points, each once; whether there is one.
+///
+/// # Errors
+/// As of [`equilibrium_curves`].
+pub(in crate::bifurcation) fn curves_through(
+    curve: &GeneralCurve<'_>,
+    kind: EquilibriumBifurcation,
+    points: &[(Vector, [f64; 2])],
+    seen: GeneralObserver<'_>,
+) -> Result<bool> {
+    let mut teller = Teller::new(seen, &curve.following);
+    let mut curves = EquilibriumCurves::new(curve, kind);
+    for (state, at) in points {
+        if !curves.is_known(state, *at) && curves.follow(state, *at, &mut teller)?.is_break() {
+            break;
+        }
+    }
+    teller.end().map(|()| curves.count > 0)
+}
+
+/// The special point of this label on a curve of bifurcations, near a place on it.
+///
+/// # Errors
+/// As of [`equilibrium_curves`].
+pub(in crate::bifurcation) fn special_near(
+    curve: &GeneralCurve<'_>,
+    kind: EquilibriumBifurcation,
+    place: (&Vector, [f64; 2]),
+    label: Label,
+) -> Result<Option<GeneralPoint>> {
+    /// How far away the point may be, as a part of both ranges.
+    const BESIDE: f64 = 1e-3;
+    /// Where it is looked for from, as a part of that.
+    const PART: f64 = 0.3;
+    let (state, at) = place;
+    let ranges = [0, 1].map(|i| {
+        let beside = BESIDE * (curve.ranges[i].1 - curve.ranges[i].0).abs();
+        (at[i] - beside, at[i] + beside)
+    });
+    let near = GeneralCurve {
+        ranges,
+        beyond: ranges,
+        at: [Vec::new(), Vec::new()],
+        watch: Vec::new(),
+        begin: None,
+        following: super::GeneralFollowing {
+            skip: Vec::new(),
+            ..curve.following.clone()
+        },
+        ..curve.clone()
+    };
+    let family = curve.system.family;
+    let along = EquilibriumCurve { family, kind };
+    // A zero at which a curve begins may be none but for rounding: then it is met from beside it.
+    let beside = |held: usize| {
+        let mut there = at;
+        there[held] += PART * (ranges[held].1 - at[held]);
+        let sharp = along.sharp(state, there, held)?;
+        Some((sharp.state, sharp.at))
+    };
+    let begins = [Some((state.clone(), at)), beside(0), beside(1)];
+    let mut found = None;
+    for begin in begins.into_iter().flatten() {
+        curves_through(&near, kind, &[begin], &mut |event| {
+            if let super::GeneralEvent::Special(point) = event
+                && point.label == Some(label)
+            {
+                found = Some(point);
+            }
+            Continue(())
+        })?;
+        if found.is_some() {
+            break;
+        }
+    }
+    Ok(found)
 }
 
 /// The values of a coordinate at which bifurcations along the other one are looked for.
@@ -197,7 +271,16 @@ struct EquilibriumCurves<'c, 'a> {
     passes: Vec<Vector>,
 }
 
-impl EquilibriumCurves<'_, '_> {
+impl<'c, 'a> EquilibriumCurves<'c, 'a> {
+    fn new(curve: &'c GeneralCurve<'a>, kind: EquilibriumBifurcation) -> Self {
+        EquilibriumCurves {
+            curve,
+            kind,
+            count: 0,
+            passes: Vec::new(),
+        }
+    }
+
     /// The bifurcations along one of the coordinates at a value of the other one.
     fn seeds(&self, along: usize, held: f64) -> Result<Vec<(Vector, [f64; 2])>> {
         let wanted = match self.kind {
@@ -399,8 +482,11 @@ impl GeneralCurve<'_> {
     /// Follows all curves and hands on what is found.
     ///
     /// # Errors
-    /// As of [`equilibrium_curves`] and [`super::orbit_curves()`].
+    /// As of [`equilibrium_curves`] and [`super::orbit_curves()`]; [`crate::Error::NoOrbit`] where none leaves the point at which they are to begin.
     pub fn follow(&self, seen: GeneralObserver<'_>) -> Result<()> {
+        if let Some(begin) = &self.begin {
+            return begun(self, begin, seen);
+        }
         match self.kind {
             GeneralBifurcation::Equilibrium(kind) => equilibrium_curves(self, kind, seen),
             GeneralBifurcation::Orbit(test_function) => {

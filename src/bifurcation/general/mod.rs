@@ -132,6 +132,8 @@ pub struct GeneralCurve<'a> {
     pub found: Option<&'a (dyn Fn([f64; 2]) -> Vec<ContinuationPoint> + Sync)>,
     /// The coordinates of the system's own values, where it has such in the ranges: where homoclinic orbits are looked for first.
     pub own: Option<[f64; 2]>,
+    /// The point of codimension two at which the curves begin, where one is given: others are not looked for.
+    pub begin: Option<GeneralPoint>,
     /// Where curves of orbits begin, where that is known otherwise than from branches of orbits.
     pub seeds: Option<&'a dyn OrbitSeeds>,
     /// For two equal parts: orbits of one symmetry, or of both.
@@ -351,7 +353,8 @@ impl GeneralPoint {
         self
     }
 
-    pub(super) fn new(number: usize, at: [f64; 2], solution: GeneralSolution) -> Self {
+    /// A point of a branch or curve of this number, of which no more is known.
+    pub fn new(number: usize, at: [f64; 2], solution: GeneralSolution) -> Self {
         GeneralPoint {
             number,
             label: None,

@@ -1,5 +1,6 @@
 //! A connection from a periodic orbit that passes near a saddle.
 
+use super::bogdanov_takens::DoubleZero;
 use super::connection::{Connection, Fold, Frame, Place, extents};
 use super::curve::HomoclinicPoint;
 use super::linear::{Condition, Solver};
@@ -202,8 +203,37 @@ impl Solver<'_> {
     /// The homoclinic orbit near an orbit, at the value of one of its parameters, in the direction in which that grows; `None` where there is none.
     pub fn first(&mut self, orbit: &ContinuationPoint, held: usize) -> Option<HomoclinicPoint> {
         let guess = self.opened(orbit, 1 - held)?;
+        self.near(guess, (held, orbit.at[held]))
+    }
+
+    /// The homoclinic orbit near the one that the normal form of a double zero predicts, of which the largest variable goes through `size`, with the number of
+    /// the parameter along which its curve leaves; `None` where there is none.
+    pub fn beside(&mut self, zero: &DoubleZero, size: f64) -> Option<(HomoclinicPoint, usize)> {
+        let Connection {
+            saddle,
+            nodes,
+            durations,
+            at,
+        } = zero.predicted(size);
+        self.frame.sizes = extents(nodes.iter());
+        self.frame.first = self.frame.sizes.clone();
+        let saddle = passed(&self.family.field(at), &saddle, &self.frame.sizes)?;
+        let splitting = self.splitting(&saddle, at)?;
+        let guess = Connection {
+            saddle,
+            nodes,
+            durations,
+            at,
+        };
+        let guess = self.extended(guess, &splitting, [true; 2]);
+        let held = zero.along(self.frame.widths);
+        Some((self.near(guess, (held, at[held]))?, held))
+    }
+
+    /// The homoclinic orbit near a guess, at a value of one of its parameters, in the direction in which that grows.
+    fn near(&mut self, guess: Connection, (held, value): (usize, f64)) -> Option<HomoclinicPoint> {
         let places = self.places(&guess)?;
-        let condition = Condition::Parameter(held, orbit.at[held]);
+        let condition = Condition::Parameter(held, value);
         let solved = self.correct(guess, &places, &condition).ok()?;
         let layout = solved.connection.layout();
         let mut along = Vector::zeros(layout.count());

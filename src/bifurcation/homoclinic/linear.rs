@@ -193,8 +193,11 @@ impl Solver<'_> {
                 tolerance: LAST,
             };
             let by = match condition {
-                Condition::None => linear.rows.clone().lu().solve(&-&linear.gaps),
-                _ => linear.solve(&row, -linear.gaps.clone().push(missing)),
+                Condition::None => connection.layout().solved(&linear.rows, &-&linear.gaps),
+                _ => {
+                    let right = -linear.gaps.clone().push(missing);
+                    linear.solve(connection.layout(), &row, right)
+                }
             };
             let by = by.ok_or_else(|| failed(last))?;
             let size = by.amax();
@@ -281,24 +284,17 @@ impl Linear {
     }
 
     /// The displacement with these right-hand sides, of which the last is that of this row.
-    pub fn solve(&self, row: &Vector, right: Vector) -> Option<Vector> {
-        let solution = self.with(row).lu().solve(&right)?;
-        solution.iter().all(|x| x.is_finite()).then_some(solution)
+    pub fn solve(&self, layout: Layout, row: &Vector, right: Vector) -> Option<Vector> {
+        layout.solved(&self.with(row), &right)
     }
 
     /// What each parameter of an isolated connection may be off by, in units of the frame.
     pub fn off(&self, layout: Layout) -> [f64; 2] {
-        let transposed = self.rows.transpose().lu();
-        [0, 1].map(|i| {
-            let mut unit = Vector::zeros(self.rows.ncols());
-            unit[layout.parameter(i)] = 1.0;
-            let adjoint = transposed.solve(&unit);
-            adjoint.map_or(f64::INFINITY, |adjoint| {
-                adjoint
-                    .iter()
-                    .zip(&self.errors)
-                    .map(|(y, error)| y.abs() * error)
-                    .sum()
+        let solved = layout.solved_transposed(&self.rows, &layout.units());
+        solved.map_or([f64::INFINITY; 2], |both| {
+            [0, 1].map(|i| {
+                let pairs = both[i].iter().zip(&self.errors);
+                pairs.map(|(y, error)| y.abs() * error).sum()
             })
         })
     }
@@ -314,7 +310,7 @@ impl Linear {
     pub fn tangent(&self, layout: Layout, along: &Vector) -> Option<Vector> {
         let mut right = Vector::zeros(self.rows.ncols());
         right[self.rows.ncols() - 1] = 1.0;
-        let tangent = self.solve(&layout.row(along), right)?;
+        let tangent = self.solve(layout, &layout.row(along), right)?;
         let length = layout.dot(&tangent, &tangent).sqrt();
         (length > 0.0).then(|| tangent / length)
     }
@@ -323,13 +319,9 @@ impl Linear {
     /// slopes in both parameters of what it makes of the equations, which is the direction to the right of the tangent.
     pub fn adjoint(&self, layout: Layout, tangent: &Vector) -> Option<(Vector, [f64; 2])> {
         let count = self.rows.nrows();
-        let transposed = self.with(&layout.row(tangent)).transpose().lu();
-        let of = |i: usize| {
-            let mut unit = Vector::zeros(count + 1);
-            unit[layout.parameter(i)] = 1.0;
-            transposed.solve(&unit)
-        };
-        let [first, second] = [of(0)?, of(1)?];
+        let all = self.with(&layout.row(tangent));
+        let both = layout.solved_transposed(&all, &layout.units())?;
+        let [first, second] = <[Vector; 2]>::try_from(both).ok()?;
         let [a, b] = [first[count], second[count]];
         let adjoint = (first * b - second * a).rows(0, count).into_owned();
         adjoint

@@ -1,6 +1,7 @@
 //! All curves of homoclinic orbits in the ranges of two parameters, with what is met on them.
 
 use super::begin::{ARC, WORK};
+use super::bogdanov_takens::DoubleZero;
 use super::codimension_two::Test;
 use super::connection::Frame;
 use super::curve::{HomoclinicCurve, HomoclinicPoint, NonCentral};
@@ -29,12 +30,7 @@ const TOLERANCE: f64 = 1e-15;
 /// Those of the orbits; [`crate::Error::TooManyPoints`]. That a curve ends early is none: it is told as `MX`.
 pub fn homoclinic_curves(curve: &GeneralCurve<'_>, seen: GeneralObserver<'_>) -> Result<()> {
     let mut teller = Teller::new(seen, &curve.following);
-    let mut curves = HomoclinicCurves {
-        curve,
-        count: 0,
-        passes: Vec::new(),
-        double_zeros: None,
-    };
+    let mut curves = HomoclinicCurves::new(curve);
     for along in [0, 1] {
         let held = 1 - along;
         let own = curve.own.iter().map(|at| at[held]).filter(|own| {
@@ -45,7 +41,10 @@ pub fn homoclinic_curves(curve: &GeneralCurve<'_>, seen: GeneralObserver<'_>) ->
         let scan: Vec<f64> = given.chain(scanned(curve, held)).collect();
         for value in scan {
             for (orbit, kind) in curves.seeds(along, value)? {
-                curves.through((&orbit, kind), held, &mut teller)?;
+                let mut solver = curves.solver(kind)?;
+                if let Some(first) = solver.first(&orbit, held) {
+                    curves.through(solver, first, held, &mut teller)?;
+                }
                 if teller.told.is_break() {
                     return teller.end();
                 }
@@ -59,6 +58,40 @@ pub fn homoclinic_curves(curve: &GeneralCurve<'_>, seen: GeneralObserver<'_>) ->
     teller.end()
 }
 
+/// Follows the curve that leaves a double zero of equilibria; whether it is found.
+///
+/// # Errors
+/// As of [`homoclinic_curves`].
+pub(in crate::bifurcation) fn homoclinic_curve_of(
+    curve: &GeneralCurve<'_>,
+    end: &GeneralPoint,
+    seen: GeneralObserver<'_>,
+) -> Result<bool> {
+    /// What the first orbit goes through, in units of 1 + |x|: where the largest is too large for the normal form smaller ones are tried.
+    const LARGEST: f64 = 0.1;
+    const SMALLER: f64 = 0.5;
+    const LEAST: f64 = 1e-3;
+    let mut teller = Teller::new(seen, &curve.following);
+    let mut curves = HomoclinicCurves::new(curve);
+    curves.double_zeros = Some(vec![end.clone()]);
+    let GeneralSolution::Equilibrium { state, .. } = &end.solution else {
+        return Ok(false);
+    };
+    let family = curve.system.family;
+    let Some(zero) = DoubleZero::of(family, state, end.at, widths(curve)) else {
+        return Ok(false);
+    };
+    let mut size = LARGEST * (1.0 + state.amax());
+    while curves.count == 0 && size > LEAST {
+        let mut solver = curves.solver(Kind::Saddle)?;
+        if let Some((first, held)) = solver.beside(&zero, size) {
+            curves.through(solver, first, held, &mut teller)?;
+        }
+        size *= SMALLER;
+    }
+    teller.end().map(|()| curves.count > 0)
+}
+
 struct HomoclinicCurves<'c, 'a> {
     curve: &'c GeneralCurve<'a>,
     count: usize,
@@ -68,7 +101,25 @@ struct HomoclinicCurves<'c, 'a> {
     double_zeros: Option<Vec<GeneralPoint>>,
 }
 
-impl HomoclinicCurves<'_, '_> {
+impl<'c, 'a> HomoclinicCurves<'c, 'a> {
+    fn new(curve: &'c GeneralCurve<'a>) -> Self {
+        HomoclinicCurves {
+            curve,
+            count: 0,
+            passes: Vec::new(),
+            double_zeros: None,
+        }
+    }
+
+    fn solver(&self, kind: Kind) -> Result<Solver<'a>> {
+        let family = self.curve.system.family;
+        Ok(Solver {
+            family,
+            tracer: Tracer::for_orbit(Choice::Taylor, TOLERANCE, (ARC, WORK))?,
+            frame: Frame::new(family.dimension(), self.curve.ranges, kind),
+        })
+    }
+
     /// The last orbits of branches along a coordinate whose period grows without bound, and what at.
     fn seeds(&self, along: usize, held: f64) -> Result<Vec<(ContinuationPoint, Kind)>> {
         let mut found = Vec::new();
@@ -123,23 +174,15 @@ impl HomoclinicCurves<'_, '_> {
         self.passes.iter().any(near)
     }
 
-    /// The curve through the homoclinic orbit near a periodic one, unless it is known.
+    /// The curve through a homoclinic orbit at a value of a parameter, unless it is known.
     fn through(
         &mut self,
-        (orbit, kind): (&ContinuationPoint, Kind),
+        mut solver: Solver<'a>,
+        first: HomoclinicPoint,
         held: usize,
         teller: &mut Teller<'_>,
     ) -> Result<()> {
         let curve = self.curve;
-        let family = curve.system.family;
-        let mut solver = Solver {
-            family,
-            tracer: Tracer::for_orbit(Choice::Taylor, TOLERANCE, (ARC, WORK))?,
-            frame: Frame::new(family.dimension(), curve.ranges, kind),
-        };
-        let Some(first) = solver.first(orbit, held) else {
-            return Ok(());
-        };
         if self.is_known(&first) {
             return Ok(());
         }
@@ -347,6 +390,7 @@ impl HomoclinicCurves<'_, '_> {
         let all = self.double_zeros.get_or_insert_with(|| {
             let mut found = Vec::new();
             let folds = GeneralCurve {
+                begin: None,
                 at: [Vec::new(), Vec::new()],
                 ..curve.clone()
             };

@@ -4,11 +4,14 @@
 //! where the equilibrium ceases to be a saddle.
 
 mod begin;
+mod bogdanov_takens;
 mod codimension_two;
 mod connection;
 mod curve;
+mod elimination;
 mod linear;
 mod locus;
 mod saddle;
 
+pub(super) use locus::homoclinic_curve_of;
 pub use locus::homoclinic_curves;

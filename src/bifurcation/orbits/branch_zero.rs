@@ -1,6 +1,7 @@
 //! Bifurcations on a branch of periodic orbits, and the branches that begin there.
 
 use super::branches::Doubling;
+use super::crossing::crossing;
 use super::multipliers_together::is_real;
 use super::normal_form::Form;
 use super::orbit_branch::{Back, OrbitBranch};
@@ -46,7 +47,7 @@ impl OrbitBranch<'_, '_, '_> {
             label == Label::Pf && watch == WatchedFunction::TestFunction(TestFunction::Fold);
         let (mut point, orbit) = match is_unfound {
             // The branch's own condition has no simple zero there.
-            true => (self.row(near, Some(label)), None),
+            true => (self.crosses(near, before), None),
             false => special_orbit(self.chart, (self.number, label), near, meets),
         };
         match watch {
@@ -59,7 +60,7 @@ impl OrbitBranch<'_, '_, '_> {
         // At a pitchfork two branches cross, and a direction between them may make the parameter seem to turn. But no fold is found there.
         if label == Label::Sn && orbit.is_none() {
             if goes_on(before, &palc.now) {
-                point = self.row(near, Some(Label::Pf));
+                point = self.crosses(near, before);
             } else {
                 self.settle(teller)?;
                 self.set.begins(self.number);
@@ -87,6 +88,29 @@ impl OrbitBranch<'_, '_, '_> {
             return Break(());
         }
         if ends { Break(()) } else { Continue(()) }
+    }
+
+    /// The point near an orbit at which another branch crosses this one, on a step that begins `before`.
+    fn crosses(&mut self, near: &Regular, before: &DirectedPoint) -> GeneralPoint {
+        let rough = self.row(near, Some(Label::Pf));
+        // Of two equal parts the branches that cross are known otherwise.
+        if self.chart.symmetry().is_some() {
+            return rough;
+        }
+        let Some(crossing) = crossing(self.chart, near, before, self.times) else {
+            return rough;
+        };
+        let point = GeneralPoint {
+            at: [crossing.at.value, rough.at[1]],
+            period: Some(crossing.period),
+            note: (!crossing.is_pitchfork).then(|| "another branch crosses this one".to_owned()),
+            ..rough
+        };
+        let off = crossing.at.uncertainty;
+        if self.crossing_at(&near.site).is_none() {
+            self.set.crossings.push(crossing);
+        }
+        point.placed(self.set.branch.system.family, [off, 0.0])
     }
 
     /// The label of a zero; `None` where it is no bifurcation, or one that is known.

@@ -2,6 +2,7 @@
 //! doubled periods.
 
 use super::chart::Chart;
+use super::crossing::Crossing;
 use super::ends::{End, backwards};
 use super::hopf::{HopfBeginning, hopfs_on_equilibria, of_symmetry};
 use super::orbit_branch::OrbitBranch;
@@ -28,7 +29,7 @@ pub(super) const LONGEST: f64 = 0.7;
 pub(super) const WORK: usize = 20_000_000;
 pub(super) const ARC: usize = 100_000;
 /// The first step onto a branch that bifurcates.
-const ASIDE: f64 = 0.02;
+pub(super) const ASIDE: f64 = 0.02;
 /// What is said of an orbit that was found by a search.
 const FOUND: &str = "begins here, at an orbit found by a search";
 /// The same where branches begin at Hopf points as a rule.
@@ -74,6 +75,8 @@ pub(super) struct OrbitBranches<'b, 'a> {
     pub pitchforks: Vec<Regular>,
     pub merged: Vec<f64>,
     pub doublings: Vec<Doubling>,
+    /// Where other branches cross those of a system without a known symmetry.
+    pub crossings: Vec<Crossing>,
     /// Where branches begin or end at the ends of the range, or pass the value at which orbits were found.
     pub ends: Vec<End>,
     /// That value.
@@ -91,6 +94,7 @@ impl<'b, 'a> OrbitBranches<'b, 'a> {
             pitchforks: Vec::new(),
             merged: Vec::new(),
             doublings: Vec::new(),
+            crossings: Vec::new(),
             ends: Vec::new(),
             begin: None,
         }
@@ -129,7 +133,9 @@ impl<'b, 'a> OrbitBranches<'b, 'a> {
         {
             self.along_found(found, teller)?;
         }
-        self.along_doubled(teller)
+        self.along_crossings(teller)?;
+        self.along_doubled(teller)?;
+        self.along_crossings(teller)
     }
 
     fn settings(&self) -> PalcSettings {
@@ -331,6 +337,30 @@ impl<'b, 'a> OrbitBranches<'b, 'a> {
             self.merged.push(here);
             if let Some(switch) = self.pitchforks[i].asymmetric() {
                 self.aside(switch, 0, teller)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The branches that cross others. The list grows as it is gone through.
+    fn along_crossings(&mut self, teller: &mut Teller<'_>) -> Result<()> {
+        let mut i = 0;
+        while i < self.crossings.len() && teller.told.is_continue() {
+            let one = &mut self.crossings[i];
+            i += 1;
+            if std::mem::replace(&mut one.visited, true) {
+                continue;
+            }
+            let (times, (site, direction)) = (one.times, one.switch.clone());
+            // To both sides of a pitchfork there are the same orbits, seen in a symmetry.
+            let sides: &[f64] = if one.is_pitchfork {
+                &[1.0]
+            } else {
+                &[1.0, -1.0]
+            };
+            for &side in sides {
+                let direction = direction.clone().scaled(side);
+                self.aside((site.clone(), direction), times, teller)?;
             }
         }
         Ok(())

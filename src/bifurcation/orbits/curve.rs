@@ -1,12 +1,12 @@
-//! One two-parameter curve of bifurcations, followed in both directions from a point on it.
+//! One two-parameter curve of bifurcations, followed in both directions from a point on it, or in one from where it begins.
 
 use super::branches::new_corrector;
 use super::ends::backwards;
 use super::half_curve::{CurvesOfKind, HalfCurve};
-use crate::bifurcation::general::{GeneralEvent, GeneralObserver, Teller};
+use crate::bifurcation::general::{GeneralEvent, GeneralObserver, GeneralPoint, Teller};
 use crate::error::Result;
 use crate::orbit::{
-    Condition, ContinuationPoint, Corrector, Goal, Palc, PalcSettings, Regular, TangentVector,
+    Condition, ContinuationPoint, Goal, Palc, PalcSettings, Regular, Switch, TangentVector,
 };
 use std::ops::ControlFlow::{Break, Continue};
 use std::sync::mpsc;
@@ -20,42 +20,74 @@ pub(super) fn through(
     seed: ContinuationPoint,
     teller: &mut Teller<'_>,
 ) -> Result<Option<Vec<[f64; 3]>>> {
-    let Some(begin) = Beginning::of(kind, number, seed)? else {
-        return Ok(None);
+    let held = Condition::Parameter(kind.held, seed.at[kind.held]);
+    let begin = Beginning::of(kind, number, (seed, held))?;
+    begin.map(|begin| begin.both_ways(teller)).transpose()
+}
+/// The curve through an orbit of codimension two, from beside it on the side where the bifurcation is one; whether there is one.
+pub(super) fn passing(
+    kind: &CurvesOfKind<'_, '_>,
+    number: usize,
+    site: &ContinuationPoint,
+    is_one: &dyn Fn(&Regular) -> bool,
+    teller: &mut Teller<'_>,
+) -> Result<bool> {
+    /// Along the curve.
+    const BESIDE: f64 = 0.02;
+    let Some(at) = Beginning::at(kind, number, site)? else {
+        return Ok(false);
     };
-    std::thread::scope(|scope| {
-        let beside = core_to_spare().then(|| {
-            let (send, coming) = mpsc::channel();
-            // Nobody listens any more where no more is wanted.
-            let mut seen = move |event| match send.send(event) {
-                Ok(()) => Continue(()),
-                Err(_) => Break(()),
-            };
-            let begin = &begin;
-            (scope.spawn(move || begin.way(-1.0, &mut seen)), coming)
-        });
-        let mut back = Vec::new();
-        let mut passes = begin.way(1.0, &mut |event| {
-            back.push(event);
+    for way in [BESIDE, -BESIDE] {
+        let moved = at.here.site.moved(&at.direction, way);
+        let across = Condition::Plane(&at.direction, &moved);
+        let begin = Beginning::of(kind, number, (moved.clone(), across))?;
+        if let Some(begin) = begin.filter(|begin| is_one(&begin.here)) {
+            begin.both_ways(teller)?;
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+/// The curve that leaves `end`, told from there on or up to there, from an orbit near one that lies in a plane across a direction, if that is one; whether there
+/// is such a curve.
+pub(super) fn outwards(
+    kind: &CurvesOfKind<'_, '_>,
+    number: usize,
+    end: &GeneralPoint,
+    (site, direction): Switch,
+    is_one: &dyn Fn(&Regular) -> bool,
+    teller: &mut Teller<'_>,
+) -> Result<bool> {
+    let held = Condition::Plane(&direction, &site);
+    let begin = Beginning::of(kind, number, (site.clone(), held))?;
+    let Some(begin) = begin.filter(|begin| is_one(&begin.here)) else {
+        return Ok(false);
+    };
+    let sense = begin.outwards(&direction)?;
+    let end = GeneralPoint {
+        number,
+        symmetry: kind.chart.symmetry(),
+        ..end.clone()
+    };
+    let end = [GeneralEvent::Special(end.clone()), GeneralEvent::Row(end)];
+    // A curve is told of with the second coordinate growing.
+    if sense > 0.0 {
+        let mut told = Vec::new();
+        begin.way(sense, &mut |event| {
+            told.push(event);
             Continue(())
         })?;
-        for event in backwards(back).into_iter().chain(begin.first()) {
-            if teller.tell(event).is_break() {
-                return Ok(Some(passes));
-            }
-        }
-        let more = match beside {
-            None => begin.way(-1.0, &mut |event| teller.tell(event))?,
-            Some((forth, coming)) => {
-                // Dropped where no more is wanted.
-                let _ = coming.into_iter().try_for_each(|event| teller.tell(event));
-                let forth = forth.join();
-                forth.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?
-            }
-        };
-        passes.extend(more);
-        Ok(Some(passes))
-    })
+        let last = begin.first().into_iter().chain(end);
+        let mut all = backwards(told).into_iter().chain(last);
+        let _ = all.try_for_each(|event| teller.tell(event));
+        return Ok(true);
+    }
+    let mut all = end.into_iter().chain(begin.first());
+    if all.try_for_each(|event| teller.tell(event)).is_continue() {
+        begin.way(sense, &mut |event| teller.tell(event))?;
+    }
+    Ok(true)
 }
 
 /// Whether there is a core for work beside this. In a pool of threads there is not: it has work for all of them.
@@ -65,25 +97,31 @@ pub(super) fn core_to_spare() -> bool {
 }
 
 /// Where both ways begin.
-struct Beginning<'k, 'c, 'a> {
+pub(super) struct Beginning<'k, 'c, 'a> {
     kind: &'k CurvesOfKind<'c, 'a>,
     number: usize,
     settings: PalcSettings,
-    here: Regular,
+    pub here: Regular,
     direction: TangentVector,
 }
 
 impl<'k, 'c, 'a> Beginning<'k, 'c, 'a> {
-    /// The bifurcation at the seed's value of the coordinate that is held, and the direction along the curve there in which the second one falls: a curve
+    /// The bifurcation near a seed that meets a condition, and the direction along the curve there in which the second coordinate falls: a curve
     /// is told of with that growing.
     fn of(
         kind: &'k CurvesOfKind<'c, 'a>,
         number: usize,
-        seed: ContinuationPoint,
+        (seed, condition): (ContinuationPoint, Condition<'_>),
     ) -> Result<Option<Self>> {
         let settings = kind.settings();
         let mut corrector = new_corrector(kind.chart.family())?;
-        let Some(here) = first(&mut corrector, &settings, kind.held, seed) else {
+        let fixed = settings.and(condition);
+        let closed = corrector.correct(seed, &settings.free, &fixed, Goal::STEP);
+        let Ok(closed) = closed else {
+            return Ok(None);
+        };
+        let here = corrector.look(closed.site, &settings.free, &settings.own());
+        let Ok(here) = here else {
             return Ok(None);
         };
         let Some(direction) = settings.direction(&here, &here.along[0]) else {
@@ -99,9 +137,74 @@ impl<'k, 'c, 'a> Beginning<'k, 'c, 'a> {
         }))
     }
 
+    /// At an orbit that is known but for some digits.
+    pub fn at(
+        kind: &'k CurvesOfKind<'c, 'a>,
+        number: usize,
+        site: &ContinuationPoint,
+    ) -> Result<Option<Self>> {
+        /// How far from where it is thought to be it may be found, as a part of both ranges.
+        const NEAR: f64 = 1e-3;
+        let ranges = kind.curve.ranges;
+        for i in [0, 1] {
+            let held = Condition::Parameter(i, site.at[i]);
+            let found = Beginning::of(kind, number, (site.clone(), held))?;
+            let off = |at: [f64; 2]| {
+                ((at[1 - i] - site.at[1 - i]) / (ranges[1 - i].1 - ranges[1 - i].0)).abs()
+            };
+            if let Some(found) = found.filter(|found| off(found.here.site.at) < NEAR) {
+                return Ok(Some(found));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The sense of the way in which orbits move along this direction.
+    fn outwards(&self, direction: &TangentVector) -> Result<f64> {
+        let corrector = new_corrector(self.kind.chart.family())?;
+        let direction = corrector.in_planes(&self.here, direction);
+        Ok(self.direction.dot(&direction).signum())
+    }
+
     /// Reports the orbit at which both directions begin, which neither meets again.
     fn first(&self) -> Vec<GeneralEvent> {
         self.half(&mut |_| Continue(())).first(&self.here)
+    }
+
+    /// Both ways, told from the end of one to that of the other. Where they pass the values at which bifurcations are looked for.
+    fn both_ways(&self, teller: &mut Teller<'_>) -> Result<Vec<[f64; 3]>> {
+        std::thread::scope(|scope| {
+            let beside = core_to_spare().then(|| {
+                let (send, coming) = mpsc::channel();
+                // Nobody listens any more where no more is wanted.
+                let mut seen = move |event| match send.send(event) {
+                    Ok(()) => Continue(()),
+                    Err(_) => Break(()),
+                };
+                (scope.spawn(move || self.way(-1.0, &mut seen)), coming)
+            });
+            let mut back = Vec::new();
+            let mut passes = self.way(1.0, &mut |event| {
+                back.push(event);
+                Continue(())
+            })?;
+            for event in backwards(back).into_iter().chain(self.first()) {
+                if teller.tell(event).is_break() {
+                    return Ok(passes);
+                }
+            }
+            let more = match beside {
+                None => self.way(-1.0, &mut |event| teller.tell(event))?,
+                Some((forth, coming)) => {
+                    // Dropped where no more is wanted.
+                    let _ = coming.into_iter().try_for_each(|event| teller.tell(event));
+                    let forth = forth.join();
+                    forth.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?
+                }
+            };
+            passes.extend(more);
+            Ok(passes)
+        })
     }
 
     /// One way: where it passes the values at which bifurcations are looked for.
@@ -127,16 +230,4 @@ impl<'k, 'c, 'a> Beginning<'k, 'c, 'a> {
             seen,
         )
     }
-}
-
-fn first(
-    corrector: &mut Corrector<'_>,
-    settings: &PalcSettings,
-    held: usize,
-    seed: ContinuationPoint,
-) -> Option<Regular> {
-    let fixed = settings.and(Condition::Parameter(held, seed.at[held]));
-    let closed = corrector.correct(seed, &settings.free, &fixed, Goal::STEP);
-    let here = corrector.look(closed.ok()?.site, &settings.free, &settings.own());
-    here.ok()
 }

@@ -11,7 +11,7 @@ use crate::bifurcation::general::{
     GeneralCurve, GeneralEvent, GeneralFollowing, GeneralPoint, GeneralSolution, SAME,
 };
 use crate::field::Vector;
-use crate::orbit::{ContinuationPoint, ShootingNodes, TestFunction};
+use crate::orbit::{ContinuationPoint, TestFunction};
 use std::ops::ControlFlow::Continue;
 use std::sync::OnceLock;
 
@@ -92,17 +92,7 @@ fn found(curve: &GeneralCurve<'_>, labels: &[Label]) -> Vec<GeneralPoint> {
             && let GeneralSolution::Equilibrium { state, .. } = &point.solution
             && let Some(period) = point.period
         {
-            let log_multipliers = vec![0.0; state.len() - 1];
-            let shooting = ShootingNodes {
-                nodes: vec![state.clone()],
-                durations: vec![period.value],
-            };
-            let solution = GeneralSolution::Orbit {
-                shooting,
-                log_multipliers,
-                neutral: 0.0,
-            };
-            found.push(GeneralPoint { solution, ..point });
+            found.push(point.shrunk(state, period));
         }
         Continue(())
     };
@@ -111,6 +101,7 @@ fn found(curve: &GeneralCurve<'_>, labels: &[Label]) -> Vec<GeneralPoint> {
             [Label::Uf] => curve.watch.iter().take(1).cloned().collect(),
             _ => Vec::new(),
         },
+        begin: None,
         following: GeneralFollowing {
             skip: Vec::new(),
             ..curve.following.clone()

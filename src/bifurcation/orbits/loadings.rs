@@ -287,6 +287,11 @@ pub(super) fn special(point: GeneralPoint, given: [Option<f64>; 2], along: Param
         // The closed forms know what is exact.
         GeneralSolution::Equilibrium { .. } => [None; 2],
     };
+    let state = match &point.solution {
+        GeneralSolution::Orbit { shooting, .. } => shooting.nodes.first(),
+        GeneralSolution::Equilibrium { .. } => None,
+    };
+    let state = state.map(|state| state.as_slice().to_vec());
     let place = along.place();
     let parameters = in_order(place, point.parameters);
     let [driving, stiffness] =
@@ -299,6 +304,7 @@ pub(super) fn special(point: GeneralPoint, given: [Option<f64>; 2], along: Param
         coefficient: point.coefficient,
         coefficient_uncertainty: point.coefficient_uncertainty,
         note: point.note,
+        state,
         orbit: point.orbit.map(|orbit| match place {
             0 => orbit,
             _ => orbit.exchanged(),

@@ -220,6 +220,7 @@ impl LocusRequest {
         with_system((&self.slab, &self.watch), Parameter::Driving, |system| {
             let test_function = of_kind(self.kind);
             let curve = GeneralCurve {
+                begin: None,
                 system: *system,
                 kind: GeneralBifurcation::Orbit(test_function),
                 ranges,

@@ -3,6 +3,7 @@
 use super::branch_end::grows_as_at;
 use super::branches::{Doubling, OrbitBranches, new_corrector};
 use super::chart::Chart;
+use super::crossing::Crossing;
 use super::growing_period::{Folds, Periods};
 use super::multipliers_together::Outside;
 use super::normal_form::Form;
@@ -20,6 +21,8 @@ use std::ops::ControlFlow::{self, Break, Continue};
 
 /// The most steps on a branch.
 const STEPS: usize = 5000;
+/// How far from a bifurcation a branch turns that has come to it, in the coordinate and in the period, relatively.
+const NEAR: (f64, f64) = (2e-3, 1e-3);
 
 /// One branch.
 pub(super) struct OrbitBranch<'s, 'b, 'a> {
@@ -195,7 +198,7 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         teller: &mut Teller<'_>,
     ) -> ControlFlow<()> {
         self.settle(teller)?;
-        self.turned = false;
+        let has_folded = std::mem::replace(&mut self.turned, false);
         let here = &now.here;
         let site = &here.site;
         let last = &before.here.site;
@@ -206,6 +209,15 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         }
         if self.chart.merges(site, last) {
             self.merges(last, teller);
+            return Break(());
+        }
+        let turns = now.direction.parameters[FREE] * before.direction.parameters[FREE] <= 0.0;
+        // At a pitchfork the orbits of a branch meet their own mirror images.
+        if turns
+            && !has_folded
+            && let Some(i) = self.crossing_at(site)
+        {
+            self.meets_its_image(i, here, teller);
             return Break(());
         }
         match back {
@@ -285,6 +297,35 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         }
     }
 
+    /// The branch has come to a pitchfork, behind which there are its mirror images.
+    fn meets_its_image(&mut self, i: usize, here: &Regular, teller: &mut Teller<'_>) {
+        let crossing = &mut self.set.crossings[i];
+        crossing.visited = true;
+        let (at, period) = (crossing.at, crossing.period);
+        if !self.set.inside(at.value) {
+            return;
+        }
+        let end = self.row(here, Some(Label::Pf));
+        let end = GeneralPoint {
+            at: [at.value, end.at[1]],
+            period: Some(period),
+            ..end
+        };
+        let end = end.placed(self.set.branch.system.family, [at.uncertainty, 0.0]);
+        let _ = self.tell(GeneralEvent::Special(end), teller);
+    }
+
+    /// The crossing that an orbit is next to.
+    pub fn crossing_at(&self, site: &ContinuationPoint) -> Option<usize> {
+        let near = |one: &Crossing| {
+            let period = one.period.value;
+            (one.at.value - site.at[FREE]).abs() < NEAR.0
+                && (site.shooting.period() / period - 1.0).abs() < NEAR.1
+                && one.times == self.times
+        };
+        self.set.crossings.iter().position(near)
+    }
+
     /// Whether a branch of doubled orbits has come back, on the step from `before`, to one that goes round once only.
     fn comes_back(&self, palc: &mut Palc<'_, '_>, before: &DirectedPoint) -> Option<Back> {
         /// Below this, in parts of how far the orbit goes, both rounds are the same one.
@@ -309,8 +350,6 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
 
     /// The period doubling that a branch of doubled orbits, whose parameter turns, is back at.
     pub fn doubling_at(&self, site: &ContinuationPoint) -> Option<usize> {
-        /// Of the turn in the coordinate, and of the period from twice that at the doubling.
-        const NEAR: (f64, f64) = (2e-3, 1e-3);
         let near = |one: &Doubling| {
             let period = 2.0 * one.orbit.site.shooting.period();
             (one.orbit.site.at[FREE] - site.at[FREE]).abs() < NEAR.0

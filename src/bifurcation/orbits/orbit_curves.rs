@@ -70,7 +70,10 @@ pub fn orbit_curves(
 }
 
 /// The variables of the orbits that have a bifurcation.
-fn charts<'a>(curve: &GeneralCurve<'a>, test_function: Option<TestFunction>) -> Vec<Chart<'a>> {
+pub(super) fn charts<'a>(
+    curve: &GeneralCurve<'a>,
+    test_function: Option<TestFunction>,
+) -> Vec<Chart<'a>> {
     let system = &curve.system;
     if system.alike.is_none() {
         return vec![Chart::whole(system)];

@@ -34,7 +34,7 @@ pub struct ContinuationOptions {
 }
 
 /// Where branches begin, but for those of equal interfaces in V_H and K, which all are found.
-#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[derive(Debug, Clone, Default, PartialEq, clap::Args)]
 #[command(next_help_heading = "Search")]
 pub struct SearchOptions {
     /// With --system or a --law from a file: branches of equilibria begin at all equilibria in a box, a range for every state, and end
@@ -234,6 +234,7 @@ impl LocusOptions {
             && names.contains(&"driving")
             && names.contains(&"stiffness")
             && self.search.start.is_none()
+            && self.begin.is_none()
             && many_and_equal(&self.model)?)
     }
 
@@ -262,6 +263,7 @@ impl LocusOptions {
         let of_orbits = CurveChoice::named(self.of.as_deref())?.of_orbits();
         // The closed forms of curves of equilibria tell of no other functions than their own.
         let by_closed_forms = self.hold.is_none()
+            && self.begin.is_none()
             && self.of.as_deref() != Some("homoclinic")
             && (self.watch.is_empty() || of_orbits);
         if system.unequal.is_none() && loading && by_closed_forms {
@@ -345,6 +347,11 @@ pub struct LocusOptions {
         help_heading = "Curve"
     )]
     pub plane: Option<String>,
+    /// Begin at a point of codimension two, FILE.special.csv:ROW, a row (from 1) of the special points of an earlier locus: follow the
+    /// curves that leave it (CP: saddle-node; BT: saddle-node, hopf, homoclinic; GH: hopf, orbit-saddle-node; ZH: saddle-node, hopf,
+    /// torus; HH: hopf, torus). The plane and the ranges are those of the file unless given
+    #[arg(long, value_name = "FILE:ROW", help_heading = "Curve")]
+    pub begin: Option<String>,
     /// Of orbits: follow those along which this expression, as of --watch, is zero, or has this value: "period = 20",
     /// "x_max - x_min = 3"
     #[arg(

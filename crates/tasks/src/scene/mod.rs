@@ -89,7 +89,7 @@ pub use fit::{
 pub use following::Following;
 pub use general::{
     Free, GeneralBranchPlan, GeneralFound, GeneralLocusPlan, GeneralRow, RowKind, SlabSubject,
-    Subject, TextSubject, plane, shown,
+    SpecialRow, Subject, TextSubject, plane, shown,
 };
 pub use holds::HoldOfRun;
 pub use instant::{Instant, run_columns};

@@ -168,5 +168,25 @@ pub fn special_columns() -> Vec<Column<Special>> {
         Column::new("coefficient_uncertainty", Number, |one: &Special| {
             one.coefficient_uncertainty.into()
         }),
+        Column::new("stress", Quantity::Stress, |one: &Special| {
+            one.state.as_ref().map(|state| state[0]).into()
+        })
+        .not_in_table(),
+        state_column(1),
+        state_column(2),
     ]
+}
+
+/// The state of one of the interfaces; where both slide alike there is one for both.
+fn state_column(interface: usize) -> Column<Special> {
+    let state = move |one: &Special| {
+        let state = one.state.as_ref()?;
+        Some(state[interface.min(state.len() - 1)].exp())
+    };
+    Column::new(
+        format!("state_{interface}"),
+        Quantity::State,
+        move |one: &Special| state(one).into(),
+    )
+    .not_in_table()
 }

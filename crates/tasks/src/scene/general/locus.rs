@@ -2,7 +2,7 @@
 
 use super::branch::{GeneralFound, found};
 use super::following::{self, Free, general, numbers};
-use super::{GeneralRow, RowKind, Subject, Watched};
+use super::{GeneralRow, RowKind, SpecialRow, Subject, Watched};
 use crate::scene::continuation::LocusOptions;
 use crate::scene::following::Following;
 use crate::scene::locus::CurveChoice;
@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use std::ops::ControlFlow;
 use twinslip::bifurcation::equilibria::generic_curve::EquilibriumBifurcation;
 use twinslip::bifurcation::general::{
-    Classified, GeneralBifurcation, GeneralCurve, GeneralEvent, GeneralSystem,
+    Classified, GeneralBifurcation, GeneralCurve, GeneralEvent, GeneralPoint, GeneralSystem,
 };
 use twinslip::error::{Error, Result};
 use twinslip::integrate::Choice;
@@ -31,6 +31,8 @@ pub struct GeneralLocusPlan<'s> {
     /// The formulas whose zeros are special points.
     pub watched: Watched,
     criticality: bool,
+    /// Where it begins.
+    begin: Option<GeneralPoint>,
     /// How.
     pub following: Following,
     /// The same for the output.
@@ -85,29 +87,27 @@ impl<'s> GeneralLocusPlan<'s> {
     ///
     /// # Errors
     /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
-    pub fn new(options: &LocusOptions, subject: &'s dyn Subject) -> Result<Self> {
+    pub fn new(
+        options: &LocusOptions,
+        begin: Option<SpecialRow>,
+        subject: &'s dyn Subject,
+    ) -> Result<Self> {
         let choice = CurveChoice::named(options.of.as_deref())?;
         choice.holds(options.hold.as_deref())?;
-        let bifurcation = match choice.name {
-            "saddle-node" => GeneralBifurcation::Equilibrium(EquilibriumBifurcation::Fold),
-            "pitchfork" if subject.has_equal_parts() => {
-                GeneralBifurcation::Equilibrium(EquilibriumBifurcation::Pitchfork)
-            }
-            "hopf" => GeneralBifurcation::Equilibrium(EquilibriumBifurcation::Hopf),
-            "orbit-pitchfork" if subject.has_equal_parts() => {
-                GeneralBifurcation::Orbit(TestFunction::Transverse)
-            }
-            "orbit-saddle-node" => GeneralBifurcation::Orbit(TestFunction::Fold),
-            "period-doubling" => GeneralBifurcation::Orbit(TestFunction::Doubling),
-            "torus" => GeneralBifurcation::Orbit(TestFunction::Torus),
-            _ if choice.holds(options.hold.as_deref())? => GeneralBifurcation::Held,
-            "homoclinic" => GeneralBifurcation::Homoclinic,
-            other => {
-                return Err(Error::Input(format!(
-                    "a curve of {other} needs a symmetry, and this system is not known to have one; follow saddle-node or orbit-saddle-node"
-                )));
-            }
-        };
+        let bifurcation = choice.bifurcation().unwrap_or(GeneralBifurcation::Held);
+        let of_symmetry = [
+            GeneralBifurcation::Equilibrium(EquilibriumBifurcation::Pitchfork),
+            GeneralBifurcation::Orbit(TestFunction::Transverse),
+        ];
+        if of_symmetry.contains(&bifurcation) && !subject.has_equal_parts() {
+            return Err(Error::Input(format!(
+                "a curve of {} needs a symmetry, and this system is not known to have one; follow saddle-node or orbit-saddle-node",
+                choice.name
+            )));
+        }
+        if let Some(begin) = &begin {
+            begin.checked(choice, bifurcation)?;
+        }
         let slab = subject
             .parameters()
             .iter()
@@ -167,6 +167,9 @@ impl<'s> GeneralLocusPlan<'s> {
             Free::new(subject, ("in", names[i]), range, &at)
         };
         let free = [free(0)?, free(1)?];
+        let told_begin = begin.as_ref().map(SpecialRow::told);
+        let point = |row: SpecialRow| row.point(subject, free.each_ref());
+        let begin = begin.map(point).transpose()?;
         let orbits = choice.of_orbits();
         let homoclinic = bifurcation == GeneralBifurcation::Homoclinic;
         match options.search.start.is_some() && orbits {
@@ -205,6 +208,7 @@ impl<'s> GeneralLocusPlan<'s> {
             "in": names,
             "ranges": free.each_ref().map(|free| list(free, &[free.range.0, free.range.1])),
             "at": free.each_ref().map(|free| list(free, &free.at)),
+            "begin": told_begin,
             "criticality": options.criticality,
             "step_limit": following.step,
             "tolerance": following.tolerance,
@@ -219,6 +223,7 @@ impl<'s> GeneralLocusPlan<'s> {
             subject,
             free,
             criticality: options.criticality,
+            begin,
             following,
             numerics,
         })
@@ -310,6 +315,11 @@ impl<'s> GeneralLocusPlan<'s> {
         let family = self.subject.family(&names, coordinates)?;
         let alike = self.subject.alike(&names);
         let functions = self.watched.of(self.subject, &*family);
+        // The functions are of states.
+        let difference = match self.watched.texts.is_empty() {
+            true => self.subject.difference(&names),
+            false => None,
+        };
         let family = functions.with(&*family);
         let alike = alike.as_deref().map(|alike| functions.with(alike));
         let equilibria = |at: [f64; 2]| {
@@ -319,7 +329,7 @@ impl<'s> GeneralLocusPlan<'s> {
                 .equilibria(&[(names[0], value(0)), (names[1], value(1))])
         };
         let (mut orbit, mut own_place) = (None, None);
-        if self.kind.orbits || self.kind.homoclinic {
+        if self.begin.is_none() && (self.kind.orbits || self.kind.homoclinic) {
             let own = [self.subject.value(names[0]), self.subject.value(names[1])];
             // Without values of their own there is no orbit either.
             if let [Ok(first), Ok(second)] = own {
@@ -348,7 +358,7 @@ impl<'s> GeneralLocusPlan<'s> {
             system: GeneralSystem {
                 family: &family,
                 alike: alike.as_ref().map(|alike| alike as _),
-                difference: None,
+                difference: difference.as_deref(),
                 names,
                 interchangeable: &interchangeable,
                 equilibria: &equilibria,
@@ -362,6 +372,7 @@ impl<'s> GeneralLocusPlan<'s> {
             orbit,
             own: own_place,
             found: self.kind.homoclinic.then_some(&orbits_at),
+            begin: self.begin.clone(),
             seeds: None,
             symmetry: None,
             criticality: match self.criticality {

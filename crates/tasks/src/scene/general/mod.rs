@@ -1,5 +1,6 @@
 //! Branches and curves in any parameter: of user-defined systems, and of interfaces in other parameters than V_H and K.
 
+mod begin;
 mod branch;
 mod following;
 mod locus;
@@ -8,6 +9,7 @@ mod slab;
 mod text;
 mod watch;
 
+pub use begin::SpecialRow;
 pub use branch::{GeneralBranchPlan, GeneralFound};
 pub use following::{Free, shown};
 pub use locus::{GeneralLocusPlan, plane};
@@ -50,6 +52,11 @@ pub trait Subject: Described + Sync {
 
     /// Of equal parts the same for states in which they move alike, where there is such a family over these parameters.
     fn alike(&self, _names: &[&str]) -> Option<Box<dyn ParametrisedField + '_>> {
+        None
+    }
+
+    /// Of two equal parts the same in variables that keep their difference, where there is such a family over these parameters.
+    fn difference(&self, _names: &[&str]) -> Option<Box<dyn ParametrisedField + '_>> {
         None
     }
 
@@ -135,6 +142,15 @@ pub trait Subject: Described + Sync {
 
     /// How many variables there are.
     fn dimension(&self) -> usize;
+
+    /// The states, or what stands for them: names and quantities.
+    fn states(&self) -> Vec<(String, Quantity)>;
+
+    /// These of a state in the units in which it is followed.
+    fn state_outward(&self, state: &Vector) -> Vec<f64>;
+
+    /// A state in the units in which it is followed by these.
+    fn state_inward(&self, states: &[f64]) -> Vector;
 
     /// What rows tell of a state or an orbit: names and quantities.
     fn numbers(&self, kind: RowKind) -> Vec<(String, Quantity)>;

@@ -1,6 +1,7 @@
 //! A row of a branch or of a curve, with its columns.
 
 use super::Subject;
+use super::begin::state_of;
 use crate::scene::column::{CellValue, Column};
 use crate::scene::units::{Quantity, Units};
 use nalgebra::Complex;
@@ -38,6 +39,8 @@ pub struct GeneralRow {
     pub parameters: Vec<Uncertain>,
     /// What the system tells of the state or the orbit.
     pub numbers: Vec<f64>,
+    /// The state of an equilibrium, or of a point of the orbit.
+    pub state: Vec<f64>,
     /// The period of an orbit, or of the oscillation at a Hopf point.
     pub period: Option<Uncertain>,
     /// The real parts of the leading eigenvalues, or ln |mu| of the leading multipliers.
@@ -136,6 +139,7 @@ impl GeneralRow {
             number: point.number,
             parameters,
             numbers,
+            state: subject.state_outward(state_of(&point.solution)),
             period: point
                 .period
                 .map(|period| Uncertain::new(period.value * time, period.uncertainty * time)),
@@ -305,6 +309,11 @@ impl GeneralRow {
             })
             .not_in_table(),
         ]);
+        let states = subject.states().into_iter().enumerate();
+        columns.extend(states.map(|(i, (name, quantity))| {
+            let known = move |row: &Row| row.state.get(i).copied().filter(|x| x.is_finite());
+            Column::new(name, quantity, move |row: &Row| known(row).into()).not_in_table()
+        }));
         columns
     }
 
@@ -313,7 +322,7 @@ impl GeneralRow {
         cell: &dyn Fn(&str) -> String,
         units: &Units,
         names: &[(&'static str, Quantity)],
-        numbers: &[(String, Quantity)],
+        (numbers, states): (&[(String, Quantity)], &[(String, Quantity)]),
     ) -> Option<Self> {
         let number = |name: &str| cell(name).parse::<f64>().ok();
         let inward = |name: &str, quantity| number(name).map(|x| units.inward(quantity, x));
@@ -338,6 +347,10 @@ impl GeneralRow {
             number: of_whole.iter().find_map(|word| word.parse().ok())?,
             parameters: parameters.collect::<Option<_>>()?,
             numbers: numbers
+                .map(|(name, quantity)| inward(name, *quantity).unwrap_or(f64::NAN))
+                .collect(),
+            state: states
+                .iter()
                 .map(|(name, quantity)| inward(name, *quantity).unwrap_or(f64::NAN))
                 .collect(),
             period: uncertain("period", Quantity::Time),

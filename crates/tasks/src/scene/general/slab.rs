@@ -14,8 +14,8 @@ use twinslip::integrate::AnyField;
 use twinslip::model::{AlikeInterfaces, Driven, Loading, UnequalInterfaces};
 use twinslip::orbit::{
     ContinuationPoint, Coordinate, Digits, InitialGuess, InterfaceSystem, OrbitAccuracy,
-    OverInterfaces, OverLogarithms, ParametrisedField, Profile, Query, ShootingNodes, Solution,
-    find, find_either, find_unequal, profile_of,
+    OverDifferenceChart, OverInterfaces, OverLoadings, OverLogarithms, ParametrisedField, Profile,
+    Query, ShootingNodes, Solution, find, find_either, find_unequal, profile_of,
 };
 
 /// Interfaces with V_H and K.
@@ -326,6 +326,17 @@ impl Subject for SlabSubject {
         })
     }
 
+    fn difference(&self, names: &[&str]) -> Option<Box<dyn ParametrisedField + '_>> {
+        if !self.equal || names != ["driving", "stiffness"] {
+            return None;
+        }
+        let (slab, own) = self.slab(&self.interfaces).ok()?;
+        // In other units than its own states have other logarithms.
+        let is_own = own.stress == 1.0 && own.time == 1.0 && own.log_state == 0.0;
+        let chart = || OverDifferenceChart(OverLoadings::new(slab, Symmetry::Asymmetric));
+        is_own.then(|| Box::new(chart()) as _)
+    }
+
     fn equilibria(&self, values: &[(&str, f64)]) -> Result<Vec<Vector>> {
         let interfaces = self.at(values)?;
         if self.is_single() {
@@ -404,6 +415,23 @@ impl Subject for SlabSubject {
 
     fn dimension(&self) -> usize {
         self.system.interfaces + 1
+    }
+
+    fn states(&self) -> Vec<(String, Quantity)> {
+        let states = (1..=self.system.interfaces).map(|i| (format!("state_{i}"), Quantity::State));
+        let stress = [("stress".to_owned(), Quantity::Stress)];
+        stress.into_iter().chain(states).collect()
+    }
+
+    fn state_outward(&self, state: &Vector) -> Vec<f64> {
+        // In the states in which both move alike there is one state for both.
+        let states = (1..=self.system.interfaces).map(|i| state[i.min(state.len() - 1)].exp());
+        [state[0]].into_iter().chain(states).collect()
+    }
+
+    fn state_inward(&self, states: &[f64]) -> Vector {
+        let logs = states[1..].iter().map(|psi| psi.ln());
+        Vector::from_iterator(states.len(), [states[0]].into_iter().chain(logs))
     }
 
     fn numbers(&self, _: RowKind) -> Vec<(String, Quantity)> {

@@ -292,19 +292,31 @@ impl Subject for TextSubject {
         self.model.system.states().len()
     }
 
-    fn numbers(&self, kind: RowKind) -> Vec<(String, Quantity)> {
+    fn states(&self) -> Vec<(String, Quantity)> {
         let states = self.model.system.states().iter().enumerate();
-        let quantity = |place| self.model.quantity(place);
+        states
+            .map(|(place, name)| ((*name).to_owned(), self.model.quantity(place)))
+            .collect()
+    }
+
+    fn state_outward(&self, state: &Vector) -> Vec<f64> {
+        self.units.outward(state).as_slice().to_vec()
+    }
+
+    fn state_inward(&self, states: &[f64]) -> Vector {
+        self.units.inward(&Vector::from_column_slice(states))
+    }
+
+    fn numbers(&self, kind: RowKind) -> Vec<(String, Quantity)> {
+        let states = self.states().into_iter();
         match kind.orbits {
             true => states
                 .take(self.model.moving())
-                .flat_map(|(place, name)| {
-                    ["min", "max"].map(|end| (format!("{name}_{end}"), quantity(place)))
+                .flat_map(|(name, quantity)| {
+                    ["min", "max"].map(|end| (format!("{name}_{end}"), quantity))
                 })
                 .collect(),
-            false => states
-                .map(|(place, name)| ((*name).to_owned(), quantity(place)))
-                .collect(),
+            false => states.collect(),
         }
     }
 
@@ -315,9 +327,7 @@ impl Subject for TextSubject {
         digits: Digits,
     ) -> Result<Vec<f64>> {
         match solution {
-            Solution::Equilibrium { state, .. } => {
-                Ok(self.units.outward(state).as_slice().to_vec())
-            }
+            Solution::Equilibrium { state, .. } => Ok(self.state_outward(state)),
             Solution::Orbit(shooting) => {
                 let ranges = ranges(&family.field(at), shooting, digits)?;
                 let ranges = ranges.into_iter().zip(&self.units.sizes);

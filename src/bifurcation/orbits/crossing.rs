@@ -1,0 +1,187 @@
+//! Where branches of periodic orbits of a system without a known symmetry cross: a multiplier is 1, and the parameter does not turn.
+//!
+//! There the orbits of a value of the parameter are no simple solutions, and Newton's method does not find them as it finds folds. Along each branch the test function of
+//! folds goes through zero as an analytic function of the parameter: it is interpolated between orbits at some distance, to both sides.
+
+use super::branches::{ASIDE, new_corrector};
+use super::chart::Chart;
+use crate::bifurcation::general::FREE;
+use crate::number::Uncertain;
+use crate::orbit::{
+    Condition, ContinuationPoint, Corrector, DirectedPoint, Goal, Regular, Switch, TangentVector,
+    TestFunction,
+};
+use std::f64::consts::PI;
+
+/// Where two branches cross.
+#[derive(Debug, Clone)]
+pub(super) struct Crossing {
+    /// The coordinate of the parameter.
+    pub at: Uncertain,
+    /// The period.
+    pub period: Uncertain,
+    /// Onto the other branch.
+    pub switch: Switch,
+    /// Whether it is a mirror image of itself: the same orbits seen in a symmetry leave to both sides.
+    pub is_pitchfork: bool,
+    /// How often the period has doubled before it.
+    pub times: usize,
+    /// Whether the other branch has been followed from here or has come here.
+    pub visited: bool,
+}
+
+/// An orbit of the branch at a value of the parameter.
+struct Sample {
+    value: f64,
+    noise: f64,
+    period: f64,
+}
+
+/// The samples at Chebyshev's points of an interval, as a polynomial.
+struct Interpolated {
+    nodes: Vec<f64>,
+    samples: Vec<Sample>,
+}
+
+impl Interpolated {
+    /// `None` where one of the orbits is not found.
+    fn new(
+        count: usize,
+        (middle, reach): (f64, f64),
+        sample: &mut dyn FnMut(f64) -> Option<Sample>,
+    ) -> Option<Self> {
+        let angle = |k: usize| PI * (k as f64 + 0.5) / count as f64;
+        let nodes: Vec<f64> = (0..count)
+            .map(|k| middle + reach * angle(k).cos())
+            .collect();
+        let samples = nodes
+            .iter()
+            .map(|&x| sample(x))
+            .collect::<Option<Vec<_>>>()?;
+        Some(Interpolated { nodes, samples })
+    }
+
+    /// By the barycentric formula (Berrut and Trefethen 2004, SIAM Rev. 46, 501-517).
+    fn at(&self, x: f64, of: impl Fn(&Sample) -> f64) -> f64 {
+        let count = self.nodes.len();
+        let (mut above, mut below) = (0.0, 0.0);
+        for (k, (node, sample)) in self.nodes.iter().zip(&self.samples).enumerate() {
+            if x == *node {
+                return of(sample);
+            }
+            let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+            let weight = sign * (PI * (k as f64 + 0.5) / count as f64).sin() / (x - node);
+            above += weight * of(sample);
+            below += weight;
+        }
+        above / below
+    }
+
+    /// The zero of the test function, and its slope there; `None` where it has the same sign at both ends.
+    fn zero(&self) -> Option<(f64, f64)> {
+        const BISECTIONS: usize = 60;
+        let value = |x| self.at(x, |sample| sample.value);
+        let (mut a, mut b) = (self.nodes[0], self.nodes[self.nodes.len() - 1]);
+        let (from, to) = (a, b);
+        let (at_a, at_b) = (value(a), value(b));
+        if at_a * at_b >= 0.0 {
+            return None;
+        }
+        for _ in 0..BISECTIONS {
+            let middle = 0.5 * (a + b);
+            match value(middle) * at_a > 0.0 {
+                true => a = middle,
+                false => b = middle,
+            }
+        }
+        Some((0.5 * (a + b), (at_b - at_a) / (to - from)))
+    }
+}
+
+/// The crossing near an orbit of a branch, on a step that begins `before`; `None` where it is not known.
+pub(super) fn crossing(
+    chart: Chart<'_>,
+    near: &Regular,
+    before: &DirectedPoint,
+    times: usize,
+) -> Option<Crossing> {
+    /// Error allowed in a step; the orbits of two interpolations, and how often the interval is halved where they differ by more than this part of it.
+    const FINE: f64 = 1e-15;
+    const ORBITS: [usize; 2] = [8, 6];
+    const HALVINGS: usize = 6;
+    const AGREED: f64 = 1e-6;
+    /// What is claimed of their difference, and of the noise.
+    const DEVIATIONS: f64 = 4.0;
+    // At the crossing itself orbits move along both branches.
+    let (from, along) = (&before.here.site, &before.direction);
+    let mut fine = Corrector::new(chart.family(), FINE).ok()?;
+    let middle = near.site.at[FREE];
+    let mut sample = |x: f64| {
+        let held = Condition::Parameter(FREE, x);
+        let site = from.moved(along, (x - from.at[FREE]) / along.parameters[FREE]);
+        let orbit = fine.correct(site, &[FREE], &[held], Goal::SHARP).ok()?;
+        let value = TestFunction::Fold.of(&orbit.spectrum);
+        let noise = fine.noise_of(TestFunction::Fold, &orbit, &[FREE], held)?;
+        Some(Sample {
+            value,
+            noise,
+            period: orbit.site.shooting.period(),
+        })
+    };
+    let mut reach = (middle - from.at[FREE]).abs();
+    for _ in 0..HALVINGS {
+        let interval = (middle, reach);
+        let made = ORBITS.map(|count| Interpolated::new(count, interval, &mut sample));
+        reach *= 0.5;
+        let [Some(more), Some(fewer)] = made else {
+            continue;
+        };
+        let (Some((at, slope)), Some((other, _))) = (more.zero(), fewer.zero()) else {
+            continue;
+        };
+        if (at - other).abs() > AGREED * reach {
+            continue;
+        }
+        let noise = more.samples.iter().map(|one| one.noise).fold(0.0, f64::max);
+        let off =
+            DEVIATIONS * ((at - other).abs() + noise / slope.abs()) + 4.0 * f64::EPSILON * at.abs();
+        let period = |one: &Interpolated, x: f64| one.at(x, |sample| sample.period);
+        let (here, there) = (period(&more, at), period(&fewer, at));
+        let by_place = (period(&more, at + off) - here).abs();
+        let rounding = 16.0 * f64::EPSILON * here;
+        let off_period = DEVIATIONS * ((here - there).abs() + by_place + rounding);
+        let (site, direction) = near.aside(along)?;
+        return Some(Crossing {
+            at: Uncertain::new(at, off),
+            period: Uncertain::new(here, off_period),
+            is_pitchfork: is_pitchfork(chart, (&site, &direction)),
+            switch: (site, direction),
+            times,
+            visited: false,
+        });
+    }
+    None
+}
+
+/// Whether the orbits that leave to both sides have the same parameter and period.
+fn is_pitchfork(chart: Chart<'_>, (site, direction): (&ContinuationPoint, &TangentVector)) -> bool {
+    /// In parts of what the parameter and ln T change by, and rounding.
+    const SAME: f64 = 1e-3;
+    const ROUNDING: f64 = 1e-9;
+    let orbit = |sense: f64| {
+        let moved = site.moved(direction, sense * ASIDE);
+        let across = Condition::Plane(direction, &moved);
+        let mut corrector = new_corrector(chart.family()).ok()?;
+        let found = corrector.correct(moved.clone(), &[FREE], &[across], Goal::STEP);
+        let site = found.ok()?.site;
+        Some([site.at[FREE], site.shooting.period().ln()])
+    };
+    let begin = [site.at[FREE], site.shooting.period().ln()];
+    let (Some(one), Some(other)) = (orbit(1.0), orbit(-1.0)) else {
+        return false;
+    };
+    (0..2).all(|i| {
+        let moved = (one[i] - begin[i]).abs().max((other[i] - begin[i]).abs());
+        (one[i] - other[i]).abs() < SAME * moved + ROUNDING * (1.0 + begin[i].abs())
+    })
+}
