@@ -26,6 +26,7 @@ mod cluster_equilibria;
 mod clusters;
 mod codimension_two;
 mod continuation;
+mod crossings;
 mod curves_equilibria;
 mod curves_orbits;
 mod curves_that_begin;
