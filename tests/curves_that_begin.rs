@@ -193,7 +193,7 @@ fn what_is_no_beginning_is_refused() {
     );
     refused(
         &format!("torus {system} {} --start x=1", fold.begin("ZH")),
-        "`start` has no meaning beside `begin`",
+        "--start has no meaning beside --begin",
     );
     refused(
         &format!(

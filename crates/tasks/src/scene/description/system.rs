@@ -44,7 +44,8 @@ pub(super) fn described(options: &ModelOptions, path: &Path) -> Result<ModelDesc
     });
     // Branches and sections take formulas of time that are periodic in it, and no others.
     let timed = system.is_timed();
-    let rests = system.phase().is_none();
+    let forced = TextModel::of(options, &[]).ok().flatten();
+    let rests = forced.is_none_or(|model| model.system.phase().is_none());
     let variables = system.states().len();
     let loci = match () {
         () if parameters.len() < 2 => Vec::new(),
