@@ -162,6 +162,64 @@ fn homoclinic_orbits_leave_a_double_zero() {
     are(&hopf, "BT", "b2", &[0.0]);
 }
 
+/// A cycle with a perturbation that turns by half while it turns once, and whose amplitude s has (s^2)' ~ p + q s^2 - s^4.
+#[test]
+fn folds_of_doubled_orbits_leave_a_degenerate_period_doubling() {
+    let system = format!("--system {FILES}/doubling.toml");
+    let plane = "--in p,q --range p=-0.5,0.5 --range q=-0.5,0.6";
+    let start = "--start=0.8,0,0,0 --period-guess 6.28 --criticality";
+    let doublings = Kept::new("gpd", &format!("period-doubling {system} {plane} {start}"));
+    let begin = doublings.begin("GPD");
+    let folds = followed(&format!("orbit-saddle-node {system} {begin} --at q=0.4"));
+    are(&folds, "UZ", "p", &[-0.04]);
+    are(&folds, "EP", "p", &[-0.09]);
+    are(&folds, "GPD", "p", &[0.0]);
+    let period = number(&folds[1], "/period/value");
+    assert!(
+        (period / (4.0 * std::f64::consts::PI) - 1.0).abs() < 1e-13,
+        "{period}"
+    );
+    let own = followed(&format!("period-doubling {system} {begin}"));
+    are(&own, "EP", "p", &[0.0, 0.0]);
+}
+
+#[test]
+fn both_curves_that_meet_in_a_fold_flip_leave_it() {
+    let system = format!("--system {FILES}/fold-flip.toml");
+    let plane = "--in b1,b2 --range b1=-0.3,0.2 --range b2=0.3,1.2";
+    let folds = Kept::new("ff", &format!("orbit-saddle-node {system} {plane}"));
+    let begin = folds.begin("FF");
+    // r^2 = 0.4, where the multiplier is -1, on b1 + b2 r^2 = r^4.
+    let doublings = followed(&format!("period-doubling {system} {begin}"));
+    are(&doublings, "EP", "b1", &[0.04, -0.3]);
+    are(&doublings, "FF", "b2", &[0.8]);
+    // b1 = -b2^2/4.
+    let folds = followed(&format!("orbit-saddle-node {system} {begin}"));
+    are(&folds, "EP", "b1", &[-0.0225, -0.3]);
+    are(&folds, "FF", "b1", &[-0.16]);
+}
+
+/// The curve of period doublings of two interfaces passes a resonance 1:2; tori of the orbits and of those of twice the period leave it.
+#[test]
+fn two_curves_of_tori_leave_a_resonance_1_2_of_interfaces() {
+    let range = "--driving-range 0.08:0.12 --stiffness-range 0.13:0.16";
+    let doublings = Kept::new("r2", &format!("period-doubling {range}"));
+    let begin = doublings.begin("R2");
+    let tori = followed(&format!("torus {begin} {range}"));
+    let at: Vec<[f64; 2]> = tori
+        .iter()
+        .filter(|one| one["label"] == "R2")
+        .map(|one| ["driving", "stiffness"].map(|name| number(one, &format!("/{name}/value"))))
+        .collect();
+    let near = |one: &&[f64; 2]| {
+        (one[0] - 0.099_364_328_916).abs() + (one[1] - 0.137_573_697_102).abs() < 1e-11
+    };
+    assert!(at.iter().filter(near).count() >= 2, "{tori:#?}");
+    let periods = tori.iter().filter(|one| one["label"] == "R3");
+    let periods: Vec<f64> = periods.map(|one| number(one, "/period/value")).collect();
+    assert!(periods.iter().any(|period| *period > 700.0), "{periods:?}");
+}
+
 #[test]
 fn what_is_no_beginning_is_refused() {
     let system = format!("--system {FILES}/zero-hopf.toml");

@@ -150,21 +150,22 @@ impl Decided {
         let (other, _) = Self::beside(&self.site, curve, self.site.at[curve.held] + BESIDE)?;
         let slope = (other.coefficient.value - self.coefficient.value) / BESIDE;
         let off = (self.coefficient.value.abs() + self.coefficient.uncertainty) / slope.abs();
-        let uncertain = |of: &dyn Fn(&Self) -> f64| {
+        let uncertain = |of: &dyn Fn(&Self) -> f64, unit: f64| {
             let (here, there) = (of(self), of(&other));
             let by_slope = off * (there - here).abs() / BESIDE;
-            Uncertain::new(here, by_slope + ROUNDING * here.abs())
+            Uncertain::new(here, by_slope + ROUNDING * here.abs().max(unit.abs()))
         };
         let label = match curve.test_function {
             TestFunction::Torus => Label::Ch,
             TestFunction::Doubling => Label::Gpd,
             _ => Label::Cp,
         };
-        let parameter = |i: usize| uncertain(&|d| curve.family.parameters(d.site.at)[i]);
+        let scale = curve.family.scale(self.site.at);
+        let parameter = |i: usize| uncertain(&|d| curve.family.parameters(d.site.at)[i], scale[i]);
         Some(CoefficientZero {
             label,
             at: [parameter(0), parameter(1)],
-            period: uncertain(&|d| d.site.shooting.period()),
+            period: uncertain(&|d| d.site.shooting.period(), 0.0),
             note: (label == Label::Cp).then(|| DEGENERATE.into()),
             orbit,
         })
