@@ -120,7 +120,7 @@ impl Layout {
         let first = |row: &usize| {
             let has = |i: &usize| equations[(*row, *i)] != 0.0;
             let many = order.iter().filter(|i| has(i)).count() > order.len() / 2;
-            let first = order.iter().position(|i| has(i));
+            let first = order.iter().position(has);
             first.filter(|_| !many).unwrap_or(order.len())
         };
         let mut rows: Vec<usize> = (0..equations.nrows()).collect();

@@ -16,6 +16,9 @@ use twinslip::field::Vector;
 use twinslip::number::{Uncertain, eigenvector};
 use twinslip::orbit::{Digits, ParametrisedField};
 
+/// Names of columns, with what they measure.
+type NamedQuantities<'n> = &'n [(String, Quantity)];
+
 /// What rows are of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RowKind {
@@ -322,7 +325,7 @@ impl GeneralRow {
         cell: &dyn Fn(&str) -> String,
         units: &Units,
         names: &[(&'static str, Quantity)],
-        (numbers, states): (&[(String, Quantity)], &[(String, Quantity)]),
+        (numbers, states): (NamedQuantities<'_>, NamedQuantities<'_>),
     ) -> Option<Self> {
         let number = |name: &str| cell(name).parse::<f64>().ok();
         let inward = |name: &str, quantity| number(name).map(|x| units.inward(quantity, x));
