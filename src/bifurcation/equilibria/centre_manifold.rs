@@ -252,7 +252,7 @@ fn eigenvectors(
 }
 
 /// Of a double zero eigenvalue: A q_0 = 0, A q_1 = q_0 and of the transpose p_1 and p_0, with the products 1 of those of one number and 0 of the others.
-pub(super) struct DoubleZero {
+pub(in crate::bifurcation) struct DoubleZero {
     pub q: [Vector; 2],
     pub p: [Vector; 2],
 }
@@ -266,25 +266,34 @@ impl DoubleZero {
         let length = (0..n).map(|i| length(i).powi(2)).sum::<f64>().sqrt();
         let q_0 = q_0 / length;
         let p_1 = null_vector(jacobian.transpose())?;
-        let q_1 = beyond(jacobian, (&p_1, &q_0))?;
+        let q_1 = across(jacobian, (&p_1, &q_0), &q_0)?;
         let p_1 = &p_1 / p_1.dot(&q_1);
-        let p_0 = beyond(&jacobian.transpose(), (&q_0, &p_1))?;
+        let p_0 = across(&jacobian.transpose(), (&q_0, &p_1), &p_1)?;
         let p_0 = &p_0 - &p_1 * p_0.dot(&q_1);
         Some(DoubleZero {
             q: [q_0, q_1],
             p: [p_0, p_1],
         })
     }
+
+    /// x with A x = y and <q_0, x> = 0, of y with <p_1, y> = 0.
+    pub fn inverse(&self, jacobian: &Matrix, y: &Vector) -> Option<Vector> {
+        across(jacobian, (&self.p[1], &self.q[0]), y)
+    }
 }
 
-/// The vector x across `null` with A x = `null`, of a singular matrix whose transpose has another null vector.
-fn beyond(matrix: &Matrix, (of_transpose, null): (&Vector, &Vector)) -> Option<Vector> {
+/// The vector x across `null` with A x = `right`, of a singular matrix whose transpose has another null vector.
+fn across(
+    matrix: &Matrix,
+    (of_transpose, null): (&Vector, &Vector),
+    right: &Vector,
+) -> Option<Vector> {
     let n = matrix.nrows();
     let mut bordered = matrix.clone().insert_row(n, 0.0).insert_column(n, 0.0);
     bordered.view_mut((0, n), (n, 1)).copy_from(of_transpose);
     bordered
         .view_mut((n, 0), (1, n))
         .copy_from(&null.transpose());
-    let solved = bordered.lu().solve(&null.push(0.0))?;
+    let solved = bordered.lu().solve(&right.push(0.0))?;
     Some(solved.rows(0, n).into_owned())
 }

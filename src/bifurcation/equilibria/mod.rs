@@ -14,7 +14,7 @@
 
 mod bialternate;
 mod branch;
-mod centre_manifold;
+pub(super) mod centre_manifold;
 mod course;
 mod critical;
 mod cubic;

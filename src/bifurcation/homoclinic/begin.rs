@@ -1,6 +1,6 @@
 //! A connection from a periodic orbit that passes near a saddle.
 
-use super::bogdanov_takens::DoubleZero;
+use super::bogdanov_takens::BogdanovTakens;
 use super::connection::{Connection, Fold, Frame, Place, extents};
 use super::curve::HomoclinicPoint;
 use super::linear::{Condition, Solver};
@@ -208,7 +208,7 @@ impl Solver<'_> {
 
     /// The homoclinic orbit near the one that the normal form of a double zero predicts, of which the largest variable goes through `size`, with the number of
     /// the parameter along which its curve leaves; `None` where there is none.
-    pub fn beside(&mut self, zero: &DoubleZero, size: f64) -> Option<(HomoclinicPoint, usize)> {
+    pub fn beside(&mut self, zero: &BogdanovTakens, size: f64) -> Option<(HomoclinicPoint, usize)> {
         let Connection {
             saddle,
             nodes,

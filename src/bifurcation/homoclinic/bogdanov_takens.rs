@@ -5,13 +5,13 @@
 //! Govaerts, Kuznetsov and Meijer 2016, SIAM J. Appl. Dyn. Syst. 15, 952-980).
 
 use super::connection::Connection;
-use crate::field::{Matrix, Vector};
+use crate::bifurcation::equilibria::centre_manifold::DoubleZero;
+use crate::field::Vector;
 use crate::integrate::AnyField;
-use crate::number::null_vector;
 use crate::orbit::ParametrisedField;
 
 /// A double zero with what its normal form is made of.
-pub(super) struct DoubleZero {
+pub(super) struct BogdanovTakens {
     state: Vector,
     at: [f64; 2],
     /// Of the critical plane.
@@ -25,49 +25,6 @@ pub(super) struct DoubleZero {
     by_square: [f64; 2],
     /// How the equilibrium moves with beta_1 and beta_2.
     moved: [Vector; 2],
-}
-
-/// The linear part with its critical vectors: A q_0 = 0, A q_1 = q_0, p_1 A = 0, p_0 A = p_1, of which <p_i, q_i> = 1 and <p_i, q_j> = 0.
-struct Critical {
-    bordered: Matrix,
-    q: [Vector; 2],
-    p: [Vector; 2],
-}
-
-impl Critical {
-    fn of(jacobian: &Matrix) -> Option<Self> {
-        let n = jacobian.nrows();
-        let q_0 = null_vector(jacobian.clone())?;
-        let p_1 = null_vector(jacobian.transpose())?;
-        let mut bordered = jacobian.clone().resize(n + 1, n + 1, 0.0);
-        bordered.view_mut((0, n), (n, 1)).copy_from(&p_1);
-        bordered
-            .view_mut((n, 0), (1, n))
-            .copy_from(&q_0.transpose());
-        let q_1 = solved(&bordered, &q_0)?;
-        let p_0 = solved(&bordered.transpose(), &p_1)?;
-        let scale = 1.0 / p_0.dot(&q_0);
-        let (mut p_0, p_1) = (p_0 * scale, p_1 * scale);
-        let beside = p_0.dot(&q_1);
-        p_0.axpy(-beside, &p_1, 1.0);
-        let known = p_0.iter().chain(&q_1).all(|x| x.is_finite());
-        known.then_some(Critical {
-            bordered,
-            q: [q_0, q_1],
-            p: [p_0, p_1],
-        })
-    }
-
-    /// x with A x = y and <q_0, x> = 0, of y with <p_1, y> = 0.
-    fn inverse(&self, y: &Vector) -> Option<Vector> {
-        solved(&self.bordered, y)
-    }
-}
-
-fn solved(bordered: &Matrix, y: &Vector) -> Option<Vector> {
-    let n = y.len();
-    let x = bordered.clone().lu().solve(&y.push(0.0))?;
-    Some(x.rows(0, n).into_owned())
 }
 
 /// f and its derivatives in both coordinates of a family.
@@ -115,7 +72,7 @@ impl InParameters<'_> {
     }
 }
 
-impl DoubleZero {
+impl BogdanovTakens {
     /// At an equilibrium; `None` where its normal form is degenerate. The widths are units of both coordinates.
     pub fn of(
         family: &dyn ParametrisedField,
@@ -124,7 +81,8 @@ impl DoubleZero {
         widths: [f64; 2],
     ) -> Option<Self> {
         let field: AnyField<'_> = family.field(at);
-        let critical = Critical::of(&field.jacobian(state))?;
+        let jacobian = field.jacobian(state);
+        let critical = DoubleZero::of(&jacobian, None)?;
         let ([q_0, q_1], [p_0, p_1]) = (&critical.q, &critical.p);
         let quadratic = |u: &Vector, v: &Vector| field.second_derivative(state, u, v);
         let of_q_0 = quadratic(q_0, q_0);
@@ -139,7 +97,7 @@ impl DoubleZero {
         let only_first = [0, 1].map(|i| by[i] / square * widths[i]);
         let neither = [-by[1] * widths[0], by[0] * widths[1]];
         // beta_2: with x = - A^{-1} J_1 k + delta q_0 the terms w_0 beta_2 vanish, and w_1 beta_2 has the coefficient 1.
-        let aside = critical.inverse(&-along(neither))?;
+        let aside = critical.inverse(&jacobian, &-along(neither))?;
         let of_terms = |u: &Vector| quadratic(u, &aside) + parameters.of_jacobian(u, neither);
         let (of_first, of_second) = (of_terms(q_0), of_terms(q_1));
         let vanish = [p_1.dot(&of_first), 2.0 * a];
@@ -156,10 +114,10 @@ impl DoubleZero {
             + parameters.of_jacobian(&second, by_second) * 2.0
             + parameters.second(by_second);
         let by_square = only_first.map(|k| -k * p_1.dot(&bent));
-        let first = critical.inverse(&(q_1 - along(only_first)))?;
+        let first = critical.inverse(&jacobian, &(q_1 - along(only_first)))?;
         let all = [a, b, kappa, delta, by_square[0], by_square[1]];
         let known = all.iter().all(|x| x.is_finite()) && a != 0.0 && b != 0.0;
-        known.then(|| DoubleZero {
+        known.then(|| BogdanovTakens {
             state: state.clone(),
             at,
             q: critical.q.clone(),

@@ -1,7 +1,7 @@
 //! All curves of homoclinic orbits in the ranges of two parameters, with what is met on them.
 
 use super::begin::{ARC, WORK};
-use super::bogdanov_takens::DoubleZero;
+use super::bogdanov_takens::BogdanovTakens;
 use super::codimension_two::Test;
 use super::connection::Frame;
 use super::curve::{HomoclinicCurve, HomoclinicPoint, NonCentral};
@@ -78,7 +78,7 @@ pub(in crate::bifurcation) fn homoclinic_curve_of(
         return Ok(false);
     };
     let family = curve.system.family;
-    let Some(zero) = DoubleZero::of(family, state, end.at, widths(curve)) else {
+    let Some(zero) = BogdanovTakens::of(family, state, end.at, widths(curve)) else {
         return Ok(false);
     };
     let mut size = LARGEST * (1.0 + state.amax());
