@@ -28,7 +28,7 @@ pub(super) fn codimension_two(
     (near, sum): (&Regular, f64),
 ) -> Option<Label> {
     /// The sums of pairs that are certainly not real, or both 1 or -1, differ from 2 or -2 by more or less than this.
-    const DOUBLE: f64 = 1e-6;
+    const DOUBLE: f64 = 1e-4;
     /// ln of a product that is 1.
     const ONE: f64 = 1e-6;
     let is_pair = sum.abs() < 2.0 - DOUBLE;
