@@ -26,7 +26,10 @@ pub fn run(options: &LocusOptions, call: &Call) -> Result<Ending> {
                     options.search.clone(),
                     CurveChoice::named(options.of.as_deref())?.of_orbits(),
                 ),
-                Some(begin) => (begin.search(&model), begin.of_orbits()),
+                Some(begin) => (
+                    begin.search(&model, options.search.turns),
+                    begin.of_orbits(),
+                ),
             };
             let subject = TextSubject::new(model, &search, orbits)?;
             return general::locus(options, begin, &subject, call);

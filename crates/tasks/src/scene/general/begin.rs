@@ -170,15 +170,19 @@ impl SpecialRow {
     }
 
     /// Where a system is looked at first: the state there. Interfaces have a scale of their own.
-    pub fn search(&self, model: &TextModel) -> SearchOptions {
+    pub fn search(&self, model: &TextModel, turns: Option<usize>) -> SearchOptions {
+        let search = SearchOptions {
+            turns,
+            ..SearchOptions::default()
+        };
         if model.slab.is_some() {
-            return SearchOptions::default();
+            return search;
         }
         let values = model.system.states().iter().map(|name| self.number(name));
         let start: Option<Vec<String>> = values.map(|x| Some(format!("{:?}", x?))).collect();
         SearchOptions {
             start: start.map(|values| values.join(",")),
-            ..SearchOptions::default()
+            ..search
         }
     }
 
