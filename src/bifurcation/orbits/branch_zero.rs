@@ -97,7 +97,7 @@ impl OrbitBranch<'_, '_, '_> {
         if self.chart.symmetry().is_some() {
             return rough;
         }
-        let Some(crossing) = crossing(self.chart, near, before, self.times) else {
+        let Some(crossing) = crossing(self.chart, near, before, (self.number, self.times)) else {
             return rough;
         };
         let point = GeneralPoint {
@@ -107,8 +107,10 @@ impl OrbitBranch<'_, '_, '_> {
             ..rough
         };
         let off = crossing.at.uncertainty;
-        if self.crossing_at(&near.site).is_none() {
-            self.set.crossings.push(crossing);
+        match self.crossing_at(&near.site) {
+            None => self.set.crossings.push(crossing),
+            // Both branches are known.
+            Some(i) => self.set.crossings[i].visited |= self.set.crossings[i].of != self.number,
         }
         point.placed(self.set.branch.system.family, [off, 0.0])
     }

@@ -24,6 +24,8 @@ pub(super) struct Crossing {
     pub switch: Switch,
     /// Whether it is a mirror image of itself: the same orbits seen in a symmetry leave to both sides.
     pub is_pitchfork: bool,
+    /// The number of the branch that it was found on.
+    pub of: usize,
     /// How often the period has doubled before it.
     pub times: usize,
     /// Whether the other branch has been followed from here or has come here.
@@ -103,7 +105,7 @@ pub(super) fn crossing(
     chart: Chart<'_>,
     near: &Regular,
     before: &DirectedPoint,
-    times: usize,
+    (of, times): (usize, usize),
 ) -> Option<Crossing> {
     /// Error allowed in a step; the orbits of two interpolations, and how often the interval is halved where they differ by more than this part of it.
     const FINE: f64 = 1e-15;
@@ -156,6 +158,7 @@ pub(super) fn crossing(
             period: Uncertain::new(here, off_period),
             is_pitchfork: is_pitchfork(chart, (&site, &direction)),
             switch: (site, direction),
+            of,
             times,
             visited: false,
         });
