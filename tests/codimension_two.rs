@@ -107,19 +107,20 @@ const COUPLED_OSCILLATORS: System = System {
     start: "u1 = 1.0; v1 = 0.0; u2 = 0.0; v2 = 0.0",
 };
 
+/// That two whole curves of Hopf points cross in a double Hopf point there, and nothing else is on them.
+#[track_caller]
+fn cross_in(run: &str, names: [&str; 2], there: [f64; 2], near: f64) -> Vec<Value> {
+    let all = special(run);
+    are(&all, names, &[(0, "HH", there), (1, "HH", there)], near);
+    are_whole(&all, 2);
+    all
+}
+
 #[test]
 fn curves_of_hopf_points_go_through_a_double_hopf_point() {
     let path = TWO_OSCILLATORS.path("two_oscillators");
     let run = format!("locus hopf --system {path} --in m1,m2 --range m1=-1,1 --range m2=-1,1");
-    let all = special(&run);
-    let there = [0.0, 0.0];
-    are(
-        &all,
-        ["m1", "m2"],
-        &[(0, "HH", there), (1, "HH", there)],
-        1e-14,
-    );
-    are_whole(&all, 2);
+    let all = cross_in(&run, ["m1", "m2"], [0.0, 0.0], 1e-14);
     // No pair of another period is told than that of the curve.
     let periods = [std::f64::consts::TAU, std::f64::consts::TAU / 1.7];
     for one in &all {
@@ -132,15 +133,8 @@ fn curves_of_hopf_points_go_through_a_double_hopf_point() {
         "--range p=-1,1 --range q=-1,1",
         "--range p=-0.5,1 --range q=-0.8,1.3",
     ] {
-        let all = special(&format!("locus hopf --system {path} --in p,q {ranges}"));
-        let there = [16.0 / 53.0, -0.5 / 53.0];
-        are(
-            &all,
-            ["p", "q"],
-            &[(0, "HH", there), (1, "HH", there)],
-            1e-13,
-        );
-        are_whole(&all, 2);
+        let run = format!("locus hopf --system {path} --in p,q {ranges}");
+        cross_in(&run, ["p", "q"], [16.0 / 53.0, -0.5 / 53.0], 1e-13);
     }
 }
 
@@ -179,15 +173,7 @@ fn a_double_hopf_point_is_met_among_many_variables() {
     };
     let path = system.path("many_variables");
     let run = format!("locus hopf --system {path} --in m1,m2 --range m1=-1,1 --range m2=-1,1");
-    let all = special(&run);
-    let there = [0.0, 0.0];
-    are(
-        &all,
-        ["m1", "m2"],
-        &[(0, "HH", there), (1, "HH", there)],
-        1e-13,
-    );
-    are_whole(&all, 2);
+    cross_in(&run, ["m1", "m2"], [0.0, 0.0], 1e-13);
 }
 
 const CYCLE: &str =

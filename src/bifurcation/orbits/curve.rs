@@ -29,7 +29,6 @@ pub(super) fn passing(
     kind: &CurvesOfKind<'_, '_>,
     number: usize,
     site: &ContinuationPoint,
-    is_one: &dyn Fn(&Regular) -> bool,
     teller: &mut Teller<'_>,
 ) -> Result<bool> {
     /// Along the curve.
@@ -41,7 +40,7 @@ pub(super) fn passing(
         let moved = at.here.site.moved(&at.direction, way);
         let across = Condition::Plane(&at.direction, &moved);
         let begin = Beginning::of(kind, number, (moved.clone(), across))?;
-        if let Some(begin) = begin.filter(|begin| is_one(&begin.here)) {
+        if let Some(begin) = begin.filter(|begin| kind.bifurcates(&begin.here)) {
             begin.both_ways(teller)?;
             return Ok(true);
         }
@@ -49,19 +48,17 @@ pub(super) fn passing(
     Ok(false)
 }
 
-/// The curve that leaves `end`, told from there on or up to there, from an orbit near one that lies in a plane across a direction, if that is one; whether there
+/// The curve that leaves `end`, told from there on or up to there, from an orbit near one that lies in a plane across a direction, if that bifurcates; whether there
 /// is such a curve.
 pub(super) fn outwards(
     kind: &CurvesOfKind<'_, '_>,
-    number: usize,
-    end: &GeneralPoint,
+    (number, end): (usize, &GeneralPoint),
     (site, direction): Switch,
-    is_one: &dyn Fn(&Regular) -> bool,
     teller: &mut Teller<'_>,
 ) -> Result<bool> {
     let held = Condition::Plane(&direction, &site);
     let begin = Beginning::of(kind, number, (site.clone(), held))?;
-    let Some(begin) = begin.filter(|begin| is_one(&begin.here)) else {
+    let Some(begin) = begin.filter(|begin| kind.bifurcates(&begin.here)) else {
         return Ok(false);
     };
     let sense = begin.outwards(&direction)?;

@@ -46,15 +46,8 @@ pub(in crate::bifurcation) fn orbit_curves_leaving(
             };
             let kind = CurvesOfKind::new(curve, Some(test_function), chart, 0, &[]);
             let field = chart.family().field(end.at);
-            let mut size = LARGEST;
-            let mut found = false;
-            while !found && size > LEAST {
-                let begin = small.ellipse(&field, size);
-                let is_one = |orbit: &Regular| is_bifurcation(test_function, orbit);
-                found = outwards(&kind, count, end, begin, &is_one, &mut teller)?;
-                size *= SMALLER;
-            }
-            if found {
+            let begin = |size| small.ellipse(&field, size);
+            if from_small(&kind, (count, end), &begin, &mut teller)? {
                 count += 1;
                 break;
             }
@@ -82,9 +75,29 @@ fn small_orbits(chart: Chart<'_>, end: &GeneralPoint) -> Option<SmallOrbits> {
         .then(|| SmallOrbits::of(&field, state, end.at, frequency))
 }
 
-/// Whether an orbit at which the condition of a curve holds has the bifurcation.
-fn is_bifurcation(test_function: TestFunction, orbit: &Regular) -> bool {
-    test_function != TestFunction::Torus || !is_real(orbit) && sum_of_pair(orbit).abs() < 2.0
+/// The curve that leaves `end`, with this number, from a small orbit on it, told by its size; whether there is one.
+fn from_small(
+    kind: &CurvesOfKind<'_, '_>,
+    (number, end): (usize, &GeneralPoint),
+    begin: &dyn Fn(f64) -> Switch,
+    teller: &mut Teller<'_>,
+) -> Result<bool> {
+    let mut size = LARGEST;
+    while size > LEAST {
+        if outwards(kind, (number, end), begin(size), teller)? {
+            return Ok(true);
+        }
+        size *= SMALLER;
+    }
+    Ok(false)
+}
+
+impl CurvesOfKind<'_, '_> {
+    /// Whether an orbit at which the condition of a curve holds has the bifurcation: a pair with the product 1 may be real.
+    pub fn bifurcates(&self, orbit: &Regular) -> bool {
+        self.test_function != Some(TestFunction::Torus)
+            || !is_real(orbit) && sum_of_pair(orbit).abs() < 2.0
+    }
 }
 
 /// Follows the curves through an orbit of codimension two that is known to some digits, and those of orbits of twice its period that leave it; whether there are
@@ -104,7 +117,6 @@ pub(in crate::bifurcation) fn orbit_curves_beside(
     let passes = end.label != Some(Label::Gpd) || test_function == TestFunction::Doubling;
     let doubles = [Label::Gpd, Label::R2].map(Some).contains(&end.label)
         && test_function != TestFunction::Doubling;
-    let is_one = |orbit: &Regular| is_bifurcation(test_function, orbit);
     for chart in charts(curve, Some(test_function)) {
         let Some(site) = meshed(chart, end) else {
             continue;
@@ -112,7 +124,7 @@ pub(in crate::bifurcation) fn orbit_curves_beside(
         let kind = |of| CurvesOfKind::new(curve, Some(of), chart, 0, &[]);
         if passes {
             let kind = kind(test_function);
-            count += usize::from(passing(&kind, count, &site, &is_one, &mut teller)?);
+            count += usize::from(passing(&kind, count, &site, &mut teller)?);
         }
         if !doubles {
             continue;
@@ -120,14 +132,9 @@ pub(in crate::bifurcation) fn orbit_curves_beside(
         let Some((orbit, direction)) = doubled(&kind(TestFunction::Doubling), &site)? else {
             continue;
         };
-        let (kind, mut size, mut found) = (kind(test_function), LARGEST, false);
-        let end = &twice(end);
-        while !found && size > LEAST {
-            let begin = (orbit.moved(&direction, size), direction.clone());
-            found = outwards(&kind, count, end, begin, &is_one, &mut teller)?;
-            size *= SMALLER;
-        }
-        count += usize::from(found);
+        let begin = |size| (orbit.moved(&direction, size), direction.clone());
+        let told = (count, &twice(end));
+        count += usize::from(from_small(&kind(test_function), told, &begin, &mut teller)?);
     }
     teller.end().map(|()| count > 0)
 }
