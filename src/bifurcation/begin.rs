@@ -1,7 +1,7 @@
 //! Curves of bifurcations that begin at a point of codimension two: which leave it, and their first points.
 //!
-//! Curves of equilibria go through it. Those of orbits begin with a small orbit about an equilibrium on whose linearisation it lies, or beside an orbit along its
-//! critical multiplier, of which the size is held and both parameters are unknown: in the normal form these are then linear (Kuznetsov 2004, chapters 8 and 9).
+//! Curves of equilibria go through it. Those of orbits begin with a small orbit: an ellipse of the linearised system about the equilibrium, or an orbit that is displaced in
+//! the direction of its critical multiplier. Its size is held and both parameters are unknown; in the normal form they enter linearly (Kuznetsov 2004, chapters 8 and 9).
 //! Homoclinic orbits of a double zero begin with the predictor of its normal form.
 
 use super::Label;

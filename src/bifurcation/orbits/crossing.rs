@@ -22,7 +22,7 @@ pub(super) struct Crossing {
     pub period: Uncertain,
     /// Onto the other branch.
     pub switch: Switch,
-    /// Whether it is a mirror image of itself: the same orbits seen in a symmetry leave to both sides.
+    /// Whether the orbits that leave to both sides are mirror images of each other.
     pub is_pitchfork: bool,
     /// The number of the branch that it was found on.
     pub of: usize,

@@ -24,7 +24,7 @@ pub(super) fn through(
     let begin = Beginning::of(kind, number, (seed, held))?;
     begin.map(|begin| begin.both_ways(teller)).transpose()
 }
-/// The curve through an orbit of codimension two, from beside it on the side where the bifurcation is one; whether there is one.
+/// Follows the curve through an orbit of codimension two, both ways, from a point beside it at which the orbit bifurcates. Returns whether there is one.
 pub(super) fn passing(
     kind: &CurvesOfKind<'_, '_>,
     number: usize,
@@ -48,8 +48,8 @@ pub(super) fn passing(
     Ok(false)
 }
 
-/// The curve that leaves `end`, told from there on or up to there, from an orbit near one that lies in a plane across a direction, if that bifurcates; whether there
-/// is such a curve.
+/// Follows the curve that leaves `end`, one way, from the orbit near `site` that lies in the plane through it across `direction`. Returns whether there is one that
+/// bifurcates.
 pub(super) fn outwards(
     kind: &CurvesOfKind<'_, '_>,
     (number, end): (usize, &GeneralPoint),

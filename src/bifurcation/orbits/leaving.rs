@@ -24,7 +24,7 @@ const LEAST: f64 = 3e-4;
 /// The frequency of a pair on the axis, relatively.
 const SAME_PAIR: f64 = 1e-4;
 
-/// Follows the curves that leave a Hopf point, told as the orbits that have shrunk to it, one of each of its pairs; whether there are any.
+/// Follows the curves that leave a Hopf point and returns whether there are any. The point is given as the orbits that have shrunk to it, one for each of its pairs.
 ///
 /// # Errors
 /// Those of the orbits; [`crate::Error::TooManyPoints`].
@@ -75,7 +75,7 @@ fn small_orbits(chart: Chart<'_>, end: &GeneralPoint) -> Option<SmallOrbits> {
         .then(|| SmallOrbits::of(&field, state, end.at, frequency))
 }
 
-/// The curve that leaves `end`, with this number, from a small orbit on it, told by its size; whether there is one.
+/// Follows the curve that leaves `end`, from the largest of several small orbits from which Newton's method converges. Returns whether there is one.
 fn from_small(
     kind: &CurvesOfKind<'_, '_>,
     (number, end): (usize, &GeneralPoint),
@@ -100,8 +100,8 @@ impl CurvesOfKind<'_, '_> {
     }
 }
 
-/// Follows the curves through an orbit of codimension two that is known to some digits, and those of orbits of twice its period that leave it; whether there are
-/// any.
+/// Follows the curves through an orbit of codimension two, and those of orbits of twice its period that leave it. Returns whether there are any. Of the orbit a point
+/// and the period are known, to some digits.
 ///
 /// # Errors
 /// As of [`orbit_curves_leaving`].
