@@ -2,7 +2,7 @@
 //! oscillators and the Brusselator in cells. Further commands on such systems are in `many_variables*`.
 
 use super::many_variables_orbits::{brusselator, oscillators, within};
-use crate::command::object;
+use crate::command::{self, object};
 use crate::common::data;
 use crate::common::text::file;
 use serde_json::Value;
@@ -227,4 +227,16 @@ fn derivatives_of_many_variables_at_once_are_those_of_each() {
     assert!((by_length[(3, 3)] - 4.0 * diffusion / 0.6).abs() < 1e-10);
     assert!((by_length[(3, 4)] + 2.0 * diffusion / 0.6).abs() < 1e-10);
     assert_eq!(by_length[(3, 28)], 0.0);
+}
+
+#[test]
+fn a_picture_says_which_states_it_shows() {
+    let picture = command::folder("large-picture").join("waves.svg");
+    let ended = command::twinslip(&format!(
+        "branch equilibria --system brusselator-cells --along L=0.4:0.6 -q --plot {}",
+        picture.display()
+    ));
+    assert_eq!(ended.code, 0, "{}", ended.err);
+    let drawn = std::fs::read_to_string(picture).expect("a picture");
+    assert!(drawn.contains("the first 6 of 50 states"), "{drawn:.2000}");
 }

@@ -239,7 +239,12 @@ pub fn general_branches(
         false => rows.to_vec(),
     };
     let mut panels = Vec::new();
-    let all = drawn(plan.subject, plan.kind).into_iter().take(MOST);
+    let all = drawn(plan.subject, plan.kind);
+    let what = match all.len() {
+        count if count > MOST => &format!("{what}, the first {MOST} of {count} states,"),
+        _ => what,
+    };
+    let all = all.into_iter().take(MOST);
     for (number, (name, quantity, places)) in all.enumerate() {
         let (mut series, mut points) = (Vec::new(), Vec::new());
         for (k, &i) in places.iter().enumerate() {
