@@ -9,8 +9,9 @@ use super::continuation_point::ContinuationPoint;
 use super::family::ParametrisedField;
 use super::linear::{Free, Linear, frame};
 use super::shooting_nodes::ShootingNodes;
+use crate::error::Error;
 use crate::field::{Matrix, Vector};
-use crate::integrate::{AnyField, MAX_STEPS, Taylor, Tolerances};
+use crate::integrate::{AnyField, AnyStep, Control, MAX_STEPS, Taylor, Tolerances};
 use crate::series::Jet3;
 use nalgebra::{Complex, DVector, Vector2, Vector3};
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -184,53 +185,73 @@ fn parts(u: &CVector) -> [(Vector, f64); 2] {
     })
 }
 
+/// The part of a displacement across the flow, of a point and the flow there.
+pub type Across<'a> = &'a dyn Fn(&Vector, &Vector) -> Matrix;
+
+/// Points and weights of Gauss on (0, 1).
+const POINTS: [(f64, f64); 6] = [
+    (0.033_765_242_898_423_99, 0.085_662_246_189_585_17),
+    (0.169_395_306_766_867_76, 0.180_380_786_524_069_3),
+    (0.380_690_406_958_401_55, 0.233_956_967_286_345_52),
+    (0.619_309_593_041_598_5, 0.233_956_967_286_345_52),
+    (0.830_604_693_233_132_2, 0.180_380_786_524_069_3),
+    (0.966_234_757_101_576, 0.085_662_246_189_585_17),
+];
+/// Into so many parts an arc is cut where derivatives are not shown within its steps.
+const PARTS: usize = 8;
+
 /// Of the arcs from node to node, what the displacements in the planes become along them: the integral over the arc of the square
-/// of a displacement's part across the flow, which `across` gives of a point and the flow there, as a quadratic form of what it is in the first
-/// node's plane.
+/// of a displacement's part across the flow, as a quadratic form of what it is in the first node's plane. For each way in which that part is measured,
+/// that of all arcs.
 pub fn squares(
     family: &dyn ParametrisedField,
     site: &ContinuationPoint,
     axes: Axes,
-    across: &dyn Fn(&Vector, &Vector) -> Matrix,
-) -> Option<Vec<Matrix>> {
-    /// Points and weights of Gauss on (0, 1).
-    const POINTS: [(f64, f64); 6] = [
-        (0.033_765_242_898_423_99, 0.085_662_246_189_585_17),
-        (0.169_395_306_766_867_76, 0.180_380_786_524_069_3),
-        (0.380_690_406_958_401_55, 0.233_956_967_286_345_52),
-        (0.619_309_593_041_598_5, 0.233_956_967_286_345_52),
-        (0.830_604_693_233_132_2, 0.180_380_786_524_069_3),
-        (0.966_234_757_101_576, 0.085_662_246_189_585_17),
-    ];
-    /// Into so many parts every arc is cut.
-    const PARTS: usize = 8;
+    measures: &[Across<'_>],
+) -> Option<Vec<Vec<Matrix>>> {
     let field = family.field(site.at);
     let mut tracer = Tracer::taylor(FINE).ok()?;
-    let points: Vec<(f64, f64)> = (0..PARTS)
-        .flat_map(|i| POINTS.map(|(at, weight)| (i as f64 + at, weight)))
-        .map(|(at, weight)| (at / PARTS as f64, weight / PARTS as f64))
-        .collect();
     let mut arcs = tracer.arcs(&field, &[]).ok()?;
-    let mut arc = |(node, &duration): (&Vector, &f64)| {
-        let mut moved = plane(family, node, field.f(node), axes).remove_column(0);
-        let (mut x, mut at) = (node.clone(), 0.0);
-        let mut sum = Matrix::zeros(moved.ncols(), moved.ncols());
-        for &(point, weight) in &points {
-            let part = arcs.arc(&x, (point - at) * duration).ok()?;
-            (x, at) = (part.end, point);
-            moved = part.tangent * moved;
-            let across = across(&x, &field.f(&x)) * &moved;
-            sum += across.tr_mul(&across) * (weight * duration);
+    let mut all = vec![Vec::new(); measures.len()];
+    let ShootingNodes { nodes, durations } = &site.shooting;
+    for (node, &duration) in nodes.iter().zip(durations) {
+        let begin = plane(family, node, field.f(node), axes).remove_column(0);
+        let nothing = Matrix::zeros(begin.ncols(), begin.ncols());
+        let mut sums = vec![nothing; measures.len()];
+        let mut add = |x: &Vector, moved: &Matrix, weight: f64| {
+            let flow = field.f(x);
+            for (sum, across) in sums.iter_mut().zip(measures) {
+                let across = across(x, &flow) * moved;
+                *sum += across.tr_mul(&across) * weight;
+            }
+        };
+        if arcs.shows_derivatives() {
+            let mut see = |step: &AnyStep<'_>| {
+                for (point, weight) in POINTS {
+                    let time = point * step.length;
+                    let made = step.derivatives(time).ok_or(Error::NotAnalytic)?;
+                    let moved = made.start * &begin;
+                    add(&step.after(time), &moved, weight * step.length);
+                }
+                Ok(Control::Continue)
+            };
+            arcs.observed(node, duration, &mut see).ok()?;
+        } else {
+            let (mut x, mut at, mut moved) = (node.clone(), 0.0, begin.clone());
+            for i in 0..PARTS {
+                for (point, weight) in POINTS {
+                    let point = (i as f64 + point) / PARTS as f64;
+                    let part = arcs.arc(&x, (point - at) * duration).ok()?;
+                    (x, at, moved) = (part.end, point, part.tangent * moved);
+                    add(&x, &moved, weight / PARTS as f64 * duration);
+                }
+            }
         }
-        Some(sum)
-    };
-    let shooting = &site.shooting;
-    shooting
-        .nodes
-        .iter()
-        .zip(&shooting.durations)
-        .map(&mut arc)
-        .collect()
+        for (all, sum) in all.iter_mut().zip(sums) {
+            all.push(sum);
+        }
+    }
+    Some(all)
 }
 
 /// The plane's coordinates: its normal, and the directions in it.

@@ -67,7 +67,7 @@ pub use goal::Goal;
 pub(crate) use hopf::EquilibriaAlong;
 pub use hopf::{HopfPoint, hopf_points};
 pub use interface_system::InterfaceSystem;
-pub(crate) use jet::{Axes, CVector, PoincareMaps, cut_into, finely_cut, squares};
+pub(crate) use jet::{Across, Axes, CVector, PoincareMaps, cut_into, finely_cut, squares};
 pub(crate) use multipliers::{eigenvalues_of, unit_pair};
 pub(crate) use noise::Noise;
 pub use orbit_curve::{DirectedPoint, OrbitCurve, Palc, PalcSettings, WatchedFunction};

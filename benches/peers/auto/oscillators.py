@@ -35,6 +35,8 @@ OSCILLATORS = [
     # The branch of bursts has no end that AUTO comes to; after 3000 steps it is at I = 3.19, and at another mesh elsewhere.
     ("hindmarsh-rose", "I", 1, 6, dict(NDIM=3, DS=0.01, DSMAX=0.1), dict(NTST=200, DS=0.01, DSMAX=0.5, NMX=3000)),
 ]
+# Where the branch from another Hopf point than the first one ends, as ours does, which goes on without end: at this period.
+OTHERS = {"hindmarsh-rose": {"HB2": {"UZSTOP": {11: 286}}}}
 # What one takes who does not know beforehand which mesh is enough.
 USUAL_MESH = 200
 # AUTO's types of points, and ours
@@ -57,7 +59,7 @@ def read(name):
 
 
 def auto(name, low, high, steady, orbits, finer=None):
-    """AUTO's special points: Hopf points of the steady states, then those of the orbits that begin at the first one.
+    """AUTO's special points: Hopf points of the steady states, then those of the orbits that begin at the first one. Orbits from others are followed too.
 
     Once more, `finer`, with twice the mesh and special points a thousand times as accurate, to see which digits hold.
     """
@@ -69,6 +71,8 @@ def auto(name, low, high, steady, orbits, finer=None):
         orbits["EPSS"] = 1e-9
     with contextlib.redirect_stdout(io.StringIO()):
         save(run(e=name, IRS=0, **steady), "steady")
+        for label, ends in OTHERS.get(name, {}).items():
+            run(loadbd("steady")(label), e=name, **{**orbits, **ends})
         save(run(loadbd("steady")("HB1"), e=name, **orbits), "orbits")
     hopf = [("HB", at, None) for kind, at, _ in read("steady") if kind == 3]
     return hopf + [(TYPES.get(kind, "other"), at, period) for kind, at, period in read("orbits")]

@@ -24,7 +24,7 @@ use crate::error::{Error, Result};
 use crate::field::{Matrix, Vector};
 use crate::number::Uncertain;
 use crate::orbit::{
-    Axes, CVector, ContinuationPoint, LogEigenvalue, ParametrisedField, PoincareMaps,
+    Across, Axes, CVector, ContinuationPoint, LogEigenvalue, ParametrisedField, PoincareMaps,
     across_in_units, cut_into, cyclic, eigenvalues_of, finely_cut, squares, unit_pair,
 };
 use nalgebra::Complex;
@@ -133,16 +133,17 @@ fn coefficient(
     };
     let [first, second] = SOLUTIONS.map(|(tolerance, parts)| {
         let cut = cut_into(parts, family, &site)?;
+        let followed: Across<'_> = &|x, flow| family.across(x, flow);
+        let in_units = family
+            .units()
+            .map(|units| move |_: &Vector, flow: &Vector| across_in_units(units, flow));
+        let told = in_units.as_ref().map(|across| across as Across<'_>);
+        let measures: Vec<_> = [followed].into_iter().chain(told).collect();
+        let mut squares = squares(family, &cut, axes, &measures)?.into_iter();
         let mut circle = Circle {
             maps: PoincareMaps::new(family, &cut, axes, tolerance)?,
-            squares: squares(family, &cut, axes, &|x, flow| family.across(x, flow))?,
-            told: match family.units() {
-                Some(units) => {
-                    let across = |_: &Vector, flow: &Vector| across_in_units(units, flow);
-                    Some(squares(family, &cut, axes, &across)?)
-                }
-                None => None,
-            },
+            squares: squares.next()?,
+            told: squares.next(),
             period: cut.shooting.period(),
         }
         .begun_at_the_top(axes);

@@ -182,6 +182,7 @@ impl Radau {
                 reach: f64::INFINITY,
                 expansion: None,
                 slips: None,
+                derivatives: None,
             })
         })?;
         self.last = stages.last.take();
