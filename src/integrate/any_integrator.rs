@@ -6,7 +6,6 @@ use super::static_field::ArcByArc;
 use super::{Choice, Radau, Taylor, Tolerances, Work};
 use crate::error::Result;
 use crate::field::{Matrix, Vector};
-use crate::series::Derivatives;
 
 /// A method of integration for fields of any dimension.
 #[derive(Debug, Clone)]
@@ -41,19 +40,6 @@ pub struct FlowDerivatives {
     /// In the plane of symmetric states: the logarithm by which a small difference between the interfaces grows, where the
     /// method makes it.
     pub log_transverse: Option<f64>,
-}
-
-impl FlowDerivatives {
-    /// Those of so many variables.
-    pub(super) fn of<const N: usize>(made: &Derivatives<N>, variables: usize) -> Self {
-        let columns = &made.parameters;
-        FlowDerivatives {
-            start: Matrix::from_fn(variables, variables, |i, j| made.start[j][i]),
-            parameters: Matrix::from_fn(variables, columns.len(), |i, j| columns[j][i]),
-            log_determinant: Some(made.log_determinant),
-            log_transverse: made.log_transverse,
-        }
-    }
 }
 
 impl AnyIntegrator {
@@ -172,25 +158,6 @@ impl DerivativesAlongArcs<'_> {
     pub fn derivatives(&mut self, t: (f64, f64), y0: &Vector) -> Result<(Vector, FlowDerivatives)> {
         of_dimension(y0.len(), self.dimension)?;
         self.by.derivatives(t, y0.as_slice())
-    }
-
-    /// Whether observers are shown the derivatives within the steps.
-    pub(crate) fn shows_derivatives(&self) -> bool {
-        self.by.shows_derivatives()
-    }
-
-    /// Goes along an arc, of which an observer is shown the derivatives in every step ([`AnyStep::derivatives`](super::AnyStep::derivatives)).
-    ///
-    /// # Errors
-    /// As of [`Self::derivatives`]; those of the observer.
-    pub(crate) fn observed(
-        &mut self,
-        t: (f64, f64),
-        y0: &Vector,
-        observer: AnyObserver<'_>,
-    ) -> Result<()> {
-        of_dimension(y0.len(), self.dimension)?;
-        self.by.observed(t, y0.as_slice(), observer)
     }
 
     /// The work of the last arc, finished or failed.

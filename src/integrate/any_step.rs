@@ -1,6 +1,5 @@
 //! The steps of a flow in any dimension, as an observer sees them.
 
-use super::any_integrator::FlowDerivatives;
 use super::{Control, Step, since};
 use crate::error::Result;
 use crate::field::Vector;
@@ -31,7 +30,6 @@ pub struct AnyStep<'a> {
     continuous: &'a dyn Fn(f64) -> Vector,
     series: &'a dyn Fn() -> Option<&'a dyn StepSeries>,
     slips: &'a dyn Fn() -> Option<[DoubleDouble; 2]>,
-    derivatives: &'a dyn Fn(f64) -> Option<FlowDerivatives>,
 }
 
 impl<'a> AnyStep<'a> {
@@ -54,10 +52,6 @@ impl<'a> AnyStep<'a> {
             },
             series: &|| step.series().map(|series| series as &dyn StepSeries),
             slips: &|| step.slips(),
-            derivatives: &|time| {
-                let made = step.derivatives(time);
-                made.map(|made| FlowDerivatives::of(&made, variables))
-            },
         })
     }
 
@@ -103,11 +97,6 @@ impl<'a> AnyStep<'a> {
     /// As [`Step::slips`].
     pub fn slips(&self) -> Option<[DoubleDouble; 2]> {
         (self.slips)()
-    }
-
-    /// As [`Step::derivatives`].
-    pub(crate) fn derivatives(&self, time: f64) -> Option<FlowDerivatives> {
-        (self.derivatives)(time)
     }
 
     /// The series at `t0`, of methods that step by one.

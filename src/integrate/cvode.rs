@@ -130,7 +130,6 @@ impl<const N: usize> CvodeIntegrator<N> {
                 reach: f64::INFINITY,
                 expansion: None,
                 slips: None,
-                derivatives: None,
             })?;
             if let Some(error) = objection.take() {
                 return Err(error);
@@ -221,7 +220,6 @@ impl<const N: usize> Integrator<N> for CvodeIntegrator<N> {
                 reach: f64::INFINITY,
                 expansion: None,
                 slips: None,
-                derivatives: None,
             })?;
         }
         Ok(y1)

@@ -38,9 +38,9 @@ pub use crate::contract::{MAX_STEPS, Tolerances, Work};
 use crate::error::Result;
 use crate::field::{Jacobian, State, VectorField};
 use crate::number::DoubleDouble;
+use crate::series::Expansion;
 #[doc(hidden)]
 pub use crate::series::{COMPILE, allowed_compiling, used_compiling};
-use crate::series::{Derivatives, Expansion};
 pub use crate::series::{VECTORS, Vectors, allowed_vectors, used_vectors};
 pub(crate) use singularity::{may_be_spike, step_underflow};
 use std::ops::Deref;
@@ -69,8 +69,6 @@ pub struct Step<'a, const N: usize> {
     pub(crate) expansion: Option<&'a dyn Deref<Target = &'a Expansion<N>>>,
     /// [`Step::slips`]
     pub(crate) slips: Option<&'a dyn Fn() -> Option<[DoubleDouble; 2]>>,
-    /// [`Step::derivatives`]
-    pub(crate) derivatives: Option<&'a dyn Fn(f64) -> Option<Derivatives<N>>>,
 }
 
 impl<'a, const N: usize> Step<'a, N> {
@@ -87,12 +85,6 @@ impl<'a, const N: usize> Step<'a, N> {
     /// The time from the beginning to this time, within the step. Its end is known better than to the rounding of the time.
     pub fn since_begin(&self, t: f64) -> f64 {
         since((self.begin, self.t1, self.length), t)
-    }
-
-    /// The derivatives of the state so long after the beginning, from 0 to `length`, in the start of the flow and in parameters, where they are
-    /// integrated with it and the method has their series.
-    pub(crate) fn derivatives(&self, time: f64) -> Option<Derivatives<N>> {
-        self.derivatives.and_then(|of| of(time))
     }
 
     /// The series at `t0`, of methods that step by one.

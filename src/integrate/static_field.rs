@@ -338,8 +338,6 @@ impl<const N: usize> Flows for Static<'_, N> {
 /// Derivatives along arcs, one after the other.
 pub(super) trait ArcByArc {
     fn derivatives(&mut self, t: (f64, f64), y0: &[f64]) -> Result<(Vector, FlowDerivatives)>;
-    fn shows_derivatives(&self) -> bool;
-    fn observed(&mut self, t: (f64, f64), y0: &[f64], observer: AnyObserver<'_>) -> Result<()>;
     fn work(&self) -> Work;
 }
 
@@ -367,7 +365,14 @@ impl<const N: usize> ArcByArc for StaticArcs<'_, N> {
                 // Also of what fails.
                 *self.work = Integrator::<N>::work(*taylor);
                 let (end, made) = made?;
-                Ok((vector(field, &end), FlowDerivatives::of(&made, n)))
+                let columns = &made.parameters;
+                let derivatives = FlowDerivatives {
+                    start: Matrix::from_fn(n, n, |i, j| made.start[j][i]),
+                    parameters: Matrix::from_fn(n, columns.len(), |i, j| columns[j][i]),
+                    log_determinant: Some(made.log_determinant),
+                    log_transverse: made.log_transverse,
+                };
+                Ok((vector(field, &end), derivatives))
             }
             Tangents::Radau(method, free) => {
                 let made = method.derivatives(field, t, &start, free);
@@ -394,25 +399,6 @@ impl<const N: usize> ArcByArc for StaticArcs<'_, N> {
                 Ok((vector(field, &end), derivatives))
             }
         }
-    }
-
-    fn shows_derivatives(&self) -> bool {
-        match &self.tangents {
-            Tangents::Series(_, tangent) => tangent.derivative_series(0, 0, &mut Vec::new()),
-            Tangents::Radau(..) | Tangents::Other(_) => false,
-        }
-    }
-
-    fn observed(&mut self, t: (f64, f64), y0: &[f64], observer: AnyObserver<'_>) -> Result<()> {
-        let (field, start) = (self.field, state(y0));
-        let variables = field.dimension();
-        let Tangents::Series(taylor, tangent) = &mut self.tangents else {
-            return Err(Error::NotAnalytic);
-        };
-        let mut see = |step: &Step<'_, N>| AnyStep::of(step, variables, &mut *observer);
-        let gone = taylor.observed_by(&mut **tangent, field, t, &start, &mut see);
-        *self.work = Integrator::<N>::work(*taylor);
-        gone
     }
 
     fn work(&self) -> Work {

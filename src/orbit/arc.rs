@@ -396,25 +396,4 @@ impl Arcs<'_> {
             error: self.step_error * work.steps.max(1) as f64,
         })
     }
-
-    /// Whether observers are shown the derivatives within the steps.
-    pub fn shows_derivatives(&self) -> bool {
-        self.made.shows_derivatives()
-    }
-
-    /// Goes along an arc, of which an observer is shown the derivatives in every step.
-    ///
-    /// # Errors
-    /// As of [`Self::arc`]; those of the observer.
-    pub fn observed(
-        &mut self,
-        start: &Vector,
-        duration: f64,
-        observer: AnyObserver<'_>,
-    ) -> Result<()> {
-        self.bound.allowed(duration)?;
-        let gone = self.made.observed((0.0, duration), start, observer);
-        self.bound.work += self.made.work();
-        gone
-    }
 }

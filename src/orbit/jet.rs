@@ -9,7 +9,6 @@ use super::continuation_point::ContinuationPoint;
 use super::family::ParametrisedField;
 use super::linear::{Free, Linear, frame};
 use super::shooting_nodes::ShootingNodes;
-use crate::error::Error;
 use crate::field::{Matrix, Vector};
 use crate::integrate::{AnyField, AnyStep, Control, MAX_STEPS, Taylor, Tolerances};
 use crate::series::Jet3;
@@ -188,18 +187,6 @@ fn parts(u: &CVector) -> [(Vector, f64); 2] {
 /// The part of a displacement across the flow, of a point and the flow there.
 pub type Across<'a> = &'a dyn Fn(&Vector, &Vector) -> Matrix;
 
-/// Points and weights of Gauss on (0, 1).
-const POINTS: [(f64, f64); 6] = [
-    (0.033_765_242_898_423_99, 0.085_662_246_189_585_17),
-    (0.169_395_306_766_867_76, 0.180_380_786_524_069_3),
-    (0.380_690_406_958_401_55, 0.233_956_967_286_345_52),
-    (0.619_309_593_041_598_5, 0.233_956_967_286_345_52),
-    (0.830_604_693_233_132_2, 0.180_380_786_524_069_3),
-    (0.966_234_757_101_576, 0.085_662_246_189_585_17),
-];
-/// Into so many parts an arc is cut where derivatives are not shown within its steps.
-const PARTS: usize = 8;
-
 /// Of the arcs from node to node, what the displacements in the planes become along them: the integral over the arc of the square
 /// of a displacement's part across the flow, as a quadratic form of what it is in the first node's plane. For each way in which that part is measured,
 /// that of all arcs.
@@ -209,43 +196,50 @@ pub fn squares(
     axes: Axes,
     measures: &[Across<'_>],
 ) -> Option<Vec<Vec<Matrix>>> {
+    /// Points and weights of Gauss on (0, 1), for every step of the flow: many where it is quick.
+    const POINTS: [(f64, f64); 8] = [
+        (0.019_855_071_751_231_912, 0.050_614_268_145_188_53),
+        (0.101_666_761_293_186_64, 0.111_190_517_226_687_21),
+        (0.237_233_795_041_835_5, 0.156_853_322_938_943_44),
+        (0.408_282_678_752_175_1, 0.181_341_891_689_180_83),
+        (0.591_717_321_247_824_8, 0.181_341_891_689_180_83),
+        (0.762_766_204_958_164_5, 0.156_853_322_938_943_44),
+        (0.898_333_238_706_813_4, 0.111_190_517_226_687_21),
+        (0.980_144_928_248_768_1, 0.050_614_268_145_188_53),
+    ];
     let field = family.field(site.at);
     let mut tracer = Tracer::taylor(FINE).ok()?;
+    let mut steps_along = |(node, &duration): (&Vector, &f64)| {
+        let mut steps = Vec::new();
+        let mut see = |step: &AnyStep<'_>| {
+            steps.push(step.length);
+            Ok(Control::Continue)
+        };
+        tracer.flow(&field, node, duration, Some(&mut see)).ok()?;
+        Some(steps)
+    };
+    let ShootingNodes { nodes, durations } = &site.shooting;
+    let steps = nodes.iter().zip(durations).map(&mut steps_along);
+    let steps: Vec<Vec<f64>> = steps.collect::<Option<_>>()?;
     let mut arcs = tracer.arcs(&field, &[]).ok()?;
     let mut all = vec![Vec::new(); measures.len()];
-    let ShootingNodes { nodes, durations } = &site.shooting;
-    for (node, &duration) in nodes.iter().zip(durations) {
-        let begin = plane(family, node, field.f(node), axes).remove_column(0);
-        let nothing = Matrix::zeros(begin.ncols(), begin.ncols());
+    for (node, steps) in nodes.iter().zip(steps) {
+        let mut moved = plane(family, node, field.f(node), axes).remove_column(0);
+        let nothing = Matrix::zeros(moved.ncols(), moved.ncols());
         let mut sums = vec![nothing; measures.len()];
-        let mut add = |x: &Vector, moved: &Matrix, weight: f64| {
-            let flow = field.f(x);
-            for (sum, across) in sums.iter_mut().zip(measures) {
-                let across = across(x, &flow) * moved;
-                *sum += across.tr_mul(&across) * weight;
-            }
-        };
-        if arcs.shows_derivatives() {
-            let mut see = |step: &AnyStep<'_>| {
-                for (point, weight) in POINTS {
-                    let time = point * step.length;
-                    let made = step.derivatives(time).ok_or(Error::NotAnalytic)?;
-                    let moved = made.start * &begin;
-                    add(&step.after(time), &moved, weight * step.length);
-                }
-                Ok(Control::Continue)
-            };
-            arcs.observed(node, duration, &mut see).ok()?;
-        } else {
-            let (mut x, mut at, mut moved) = (node.clone(), 0.0, begin.clone());
-            for i in 0..PARTS {
-                for (point, weight) in POINTS {
-                    let point = (i as f64 + point) / PARTS as f64;
-                    let part = arcs.arc(&x, (point - at) * duration).ok()?;
-                    (x, at, moved) = (part.end, point, part.tangent * moved);
-                    add(&x, &moved, weight / PARTS as f64 * duration);
+        // The last point, and when it was, counted from the begin of the step.
+        let (mut x, mut before) = (node.clone(), 0.0);
+        for length in steps {
+            for (point, weight) in POINTS {
+                let part = arcs.arc(&x, point * length - before).ok()?;
+                (x, before, moved) = (part.end, point * length, part.tangent * moved);
+                let flow = field.f(&x);
+                for (sum, across) in sums.iter_mut().zip(measures) {
+                    let across = across(&x, &flow) * &moved;
+                    *sum += across.tr_mul(&across) * (weight * length);
                 }
             }
+            before -= length;
         }
         for (all, sum) in all.iter_mut().zip(sums) {
             all.push(sum);

@@ -182,7 +182,6 @@ impl Radau {
                 reach: f64::INFINITY,
                 expansion: None,
                 slips: None,
-                derivatives: None,
             })
         })?;
         self.last = stages.last.take();

@@ -101,7 +101,6 @@ impl<'a, S: Scheme, const N: usize> StepState<'a, S, N> {
             reach: f64::INFINITY,
             expansion: None,
             slips: None,
-            derivatives: None,
         })
     }
 }

@@ -153,7 +153,6 @@ impl Batch {
                             reach: batch_solution.reaches()[lane],
                             expansion: Some(&made),
                             slips: None,
-                            derivatives: None,
                         },
                     );
                     here.y = end;

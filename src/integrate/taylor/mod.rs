@@ -150,20 +150,6 @@ impl Taylor {
         Ok((end, numbers(tangent.derivatives(), t.1)?))
     }
 
-    /// The flow with these derivatives, which an observer is shown in every step ([`Step::derivatives`](super::Step::derivatives)).
-    pub(super) fn observed_by<const N: usize>(
-        &mut self,
-        tangent: &mut dyn Tangent<N>,
-        field: &dyn VectorField<N>,
-        t: (f64, f64),
-        y0: &State<N>,
-        observer: Observer<'_, N>,
-    ) -> Result<()> {
-        self.work = Work::default();
-        self.trajectory(field, t, y0, tangent, Some(observer), &mut |_, _, _| false)?;
-        Ok(())
-    }
-
     /// The state at `t.1` to third order in two variations, those of `y0`.
     ///
     /// # Errors
@@ -380,7 +366,6 @@ impl Taylor {
                     reach: f64::INFINITY,
                     expansion: Some(&made),
                     slips: Some(&|| slips().map(|slips| unseen.and(slips))),
-                    derivatives: Some(&|time| solution.derivatives_within(accuracy.order, time)),
                 })?;
                 *y = end;
                 *unseen = Unseen::default();

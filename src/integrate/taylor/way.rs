@@ -71,7 +71,6 @@ impl<const N: usize> Way<N> {
             reach: f64::INFINITY,
             expansion: None,
             slips: Some(&|| Some(self.unseen.and([0.0; 2]))),
-            derivatives: None,
         })
     }
 }

@@ -74,17 +74,8 @@ pub(super) trait Trajectory {
     }
     /// The k-th coefficients of the i-th variable's derivatives in all directions; none if not asked for.
     fn derivative_level(&self, _i: usize, _k: usize, _into: &mut Vec<f64>) {}
-    /// The derivatives of all variables in all directions so long after the beginning of the last step, which was of this order: those of the first
-    /// variable first; none if not asked for.
-    fn derivatives_within(&self, _order: usize, _time: f64) -> Vec<f64> {
-        Vec::new()
-    }
     /// The integral of the Jacobian's trace, and the logarithm of the growth across a symmetric subspace.
     fn log_growth(&self) -> (f64, Option<f64>) {
-        (0.0, None)
-    }
-    /// The same so long after the beginning of the last step, which was of this order.
-    fn log_growth_within(&self, _order: usize, _time: f64) -> (f64, Option<f64>) {
         (0.0, None)
     }
 }

@@ -104,23 +104,8 @@ pub(super) struct Linearised<'a, T: Element, X> {
     parameters: usize,
     /// Whether the growth across a symmetric subspace is what the last variable grows by on its own.
     symmetric: bool,
-    growth: Growth,
-    /// As it was where the last step began.
-    begun: Growth,
-}
-
-/// The integral of the Jacobian's trace, and that of what the last variable grows by on its own.
-#[derive(Debug, Clone, Copy)]
-struct Growth {
     log_determinant: DoubleDouble,
     log_transverse: DoubleDouble,
-}
-
-impl Growth {
-    const NONE: Self = Growth {
-        log_determinant: DoubleDouble::ZERO,
-        log_transverse: DoubleDouble::ZERO,
-    };
 }
 
 impl<'a, T: Element, X: Element> Linearised<'a, T, X> {
@@ -147,8 +132,8 @@ impl<'a, T: Element, X: Element> Linearised<'a, T, X> {
             solution,
             parameters,
             symmetric,
-            growth: Growth::NONE,
-            begun: Growth::NONE,
+            log_determinant: DoubleDouble::ZERO,
+            log_transverse: DoubleDouble::ZERO,
         }
     }
 
@@ -178,32 +163,31 @@ impl<'a, T: Element, X: Element> Linearised<'a, T, X> {
     fn advance_columns(&mut self, order: usize, h: DoubleDouble) {
         let any = self.columns.x[0];
         let h = any.like_exact(h);
-        for at in 0..self.columns.x.len() {
-            self.columns.x[at] = self.column_after(at, order, h);
+        let ColumnChunks {
+            variables,
+            chunks,
+            x,
+            series,
+        } = &mut self.columns;
+        let width = *variables * *chunks;
+        for (at, x) in x.iter_mut().enumerate() {
+            let mut sum = series[order * width + at];
+            for k in (0..order).rev() {
+                sum = sum.mul_add(h, series[k * width + at]);
+            }
+            *x = sum;
         }
-    }
-
-    /// What stands at a place among the columns after h units of the last step.
-    #[inline(always)]
-    fn column_after(&self, at: usize, order: usize, h: X) -> X {
-        let ColumnChunks { x, series, .. } = &self.columns;
-        let width = x.len();
-        let mut sum = series[order * width + at];
-        for k in (0..order).rev() {
-            sum = sum.mul_add(h, series[k * width + at]);
-        }
-        sum
     }
 
     /// A step, in the instructions that the processor has.
     #[inline(always)]
     fn advance_here(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble {
-        let order = accuracy.order;
+        let (n, order) = (self.columns.variables, accuracy.order);
         self.solution.stay_within(limit);
         self.solution.expand(order);
         let (program, rows) = self.solution.made();
         if program.branches {
-            self.entries = Entries::of(program, self.columns.variables, self.parameters);
+            self.entries = Entries::of(program, n, self.parameters);
         }
         let unit = self.solution.unit();
         let (columns, compiled) = (&mut self.columns, &mut self.compiled);
@@ -230,37 +214,22 @@ impl<'a, T: Element, X: Element> Linearised<'a, T, X> {
         if !taken.is_finite() {
             return taken;
         }
-        self.advance_columns(order, taken / unit);
-        self.begun = self.growth;
-        self.growth = self.grown(order, taken);
+        let h = taken / unit;
+        self.advance_columns(order, h);
+        for entry in &self.entries.jacobian {
+            if entry.place.0 != entry.place.1 {
+                continue;
+            }
+            let grown = self.mean(entry.series, order, h) * taken;
+            self.log_determinant = self.log_determinant + grown;
+            if entry.place.0 == n - 1 {
+                self.log_transverse = self.log_transverse + grown;
+            }
+        }
         taken
     }
 
-    /// The growth up to this time after the beginning of the last step.
-    #[inline(always)]
-    fn grown(&self, order: usize, time: DoubleDouble) -> Growth {
-        let mut growth = self.begun;
-        let h = time / self.solution.unit();
-        for entry in &self.entries.jacobian {
-            let (row, column) = entry.place;
-            if row != column {
-                continue;
-            }
-            let grown = self.mean(entry.series, order, h) * time;
-            growth.log_determinant = growth.log_determinant + grown;
-            if row + 1 == self.columns.variables {
-                growth.log_transverse = growth.log_transverse + grown;
-            }
-        }
-        growth
-    }
-
-    fn logs(&self, growth: Growth) -> (f64, Option<f64>) {
-        let across = self.symmetric.then(|| growth.log_transverse.to_f64());
-        (growth.log_determinant.to_f64(), across)
-    }
-
-    /// The mean over h units, from the beginning of the last step, of a diagonal entry of the Jacobian.
+    /// The mean over the last step, of h units, of a diagonal entry of the Jacobian.
     #[inline(always)]
     fn mean(&self, of: Source, order: usize, h: DoubleDouble) -> DoubleDouble {
         let (_, rows) = self.solution.made();
@@ -315,8 +284,8 @@ impl<T: Element, X: Element> Trajectory for Linearised<'_, T, X> {
     fn start(&mut self, y: &[f64]) {
         self.solution.start(y);
         self.columns.start();
-        self.growth = Growth::NONE;
-        self.begun = Growth::NONE;
+        self.log_determinant = DoubleDouble::ZERO;
+        self.log_transverse = DoubleDouble::ZERO;
     }
 
     fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble {
@@ -371,26 +340,8 @@ impl<T: Element, X: Element> Trajectory for Linearised<'_, T, X> {
         into.extend(lanes.take(directions));
     }
 
-    fn derivatives_within(&self, order: usize, time: f64) -> Vec<f64> {
-        let chunks = self.columns.chunks;
-        let directions = self.columns.variables + self.parameters;
-        let h = self.columns.x[0].like(time / self.solution.unit());
-        let mut all = Vec::with_capacity(self.columns.variables * directions);
-        for first in (0..self.columns.x.len()).step_by(chunks) {
-            for chunk in 0..chunks {
-                let columns = self.column_after(first + chunk, order, h);
-                let lanes = X::LANES.min(directions - chunk * X::LANES);
-                all.extend((0..lanes).map(|lane| columns.lane(lane)));
-            }
-        }
-        all
-    }
-
     fn log_growth(&self) -> (f64, Option<f64>) {
-        self.logs(self.growth)
-    }
-
-    fn log_growth_within(&self, order: usize, time: f64) -> (f64, Option<f64>) {
-        self.logs(self.grown(order, time.into()))
+        let across = self.symmetric.then(|| self.log_transverse.to_f64());
+        (self.log_determinant.to_f64(), across)
     }
 }

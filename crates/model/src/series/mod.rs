@@ -147,11 +147,6 @@ pub trait Solution<const N: usize> {
     }
     /// The series at the beginning of the last step.
     fn expansion(&self, order: usize, into: &mut Expansion<N>);
-    /// The derivatives so long after the beginning of the last step, which was of this order; `None` of solutions that make none or don't keep their
-    /// series.
-    fn derivatives_within(&self, _order: usize, _time: f64) -> Option<Derivatives<N>> {
-        None
-    }
 }
 
 /// A solution with its derivatives in its start and in some parameters, on its way. Started with y, those in y are the identity

@@ -179,19 +179,6 @@ impl<T: Deref<Target: Trajectory> + DerefMut, const N: usize> Solution<N> for Kn
             self.0.slip_rates(i, &mut rates[..order]);
         }
     }
-
-    fn derivatives_within(&self, order: usize, time: f64) -> Option<Derivatives<N>> {
-        let all = self.0.derivatives_within(order, time);
-        let directions = self.1 + self.0.free();
-        let column = |at: usize| self.each(|i| all[i * directions + at]);
-        let (log_determinant, log_transverse) = self.0.log_growth_within(order, time);
-        (!all.is_empty()).then(|| Derivatives {
-            start: std::array::from_fn(|at| if at < self.1 { column(at) } else { [0.0; N] }),
-            parameters: (self.1..directions).map(column).collect(),
-            log_determinant,
-            log_transverse,
-        })
-    }
 }
 
 impl<const N: usize, T: Deref<Target: Trajectory> + DerefMut> Tangent<N> for Known<T, N> {
