@@ -113,11 +113,11 @@ fn branches_that_take_longest_have_all_points_that_auto_finds() {
     are_whole(|name| LONG.contains(&name));
 }
 
-/// Beside the homoclinic orbits of bursts: where an arc is quick and slow in turn, its length across the flow was known to four digits only.
+/// The coefficient needs the mean square length of the eigenvector along the orbit. Along bursts a fixed number of points in each arc gave that to four digits only.
 #[test]
 fn coefficients_along_relaxation_oscillations_are_sharp() {
-    /// By another program: jets of third order from plane to plane along 40 arcs (and 55) by DOP853 at 3e-14, the eigenvector and its adjoint by a
-    /// singular value decomposition of the whole circle, the length as one more variable of the flow.
+    /// Computed independently with SciPy: Taylor maps of third order between the planes of 40 nodes (and of 55) by DOP853 at 3e-14, the eigenvector and its adjoint
+    /// from a singular value decomposition of the cyclic system, the squared length as one more variable of the flow.
     const TRUTH: f64 = -30.815_163_313;
     let made = command::object(
         "branch orbits --system tests/data/oscillators/hindmarsh-rose.toml --along I --from 1.2 --to 1.4",

@@ -184,19 +184,18 @@ fn parts(u: &CVector) -> [(Vector, f64); 2] {
     })
 }
 
-/// The part of a displacement across the flow, of a point and the flow there.
+/// How long a displacement is across the flow: the matrix that gives its part there, from the state and the rates at that point.
 pub type Across<'a> = &'a dyn Fn(&Vector, &Vector) -> Matrix;
 
-/// Of the arcs from node to node, what the displacements in the planes become along them: the integral over the arc of the square
-/// of a displacement's part across the flow, as a quadratic form of what it is in the first node's plane. For each way in which that part is measured,
-/// that of all arcs.
+/// For each way of measuring lengths, and for each arc: the integral over the arc of the squared length of a displacement across the flow, as a quadratic form of
+/// the displacement at the first node, in the coordinates of the plane there. By Gauss quadrature in every step of the flow.
 pub fn squares(
     family: &dyn ParametrisedField,
     site: &ContinuationPoint,
     axes: Axes,
     measures: &[Across<'_>],
 ) -> Option<Vec<Vec<Matrix>>> {
-    /// Points and weights of Gauss on (0, 1), for every step of the flow: many where it is quick.
+    /// Points and weights of the Gauss quadrature on (0, 1). Steps are short where the motion is fast.
     const POINTS: [(f64, f64); 8] = [
         (0.019_855_071_751_231_912, 0.050_614_268_145_188_53),
         (0.101_666_761_293_186_64, 0.111_190_517_226_687_21),
@@ -227,7 +226,7 @@ pub fn squares(
         let mut moved = plane(family, node, field.f(node), axes).remove_column(0);
         let nothing = Matrix::zeros(moved.ncols(), moved.ncols());
         let mut sums = vec![nothing; measures.len()];
-        // The last point, and when it was, counted from the begin of the step.
+        // The last point and its time, counted from the beginning of the step.
         let (mut x, mut before) = (node.clone(), 0.0);
         for length in steps {
             for (point, weight) in POINTS {

@@ -35,7 +35,7 @@ OSCILLATORS = [
     # The branch of bursts has no end that AUTO comes to; after 3000 steps it is at I = 3.19, and at another mesh elsewhere.
     ("hindmarsh-rose", "I", 1, 6, dict(NDIM=3, DS=0.01, DSMAX=0.1), dict(NTST=200, DS=0.01, DSMAX=0.5, NMX=3000)),
 ]
-# Where the branch from another Hopf point than the first one ends, as ours does, which goes on without end: at this period.
+# Branches from other Hopf points than the first one. This one goes on without end: AUTO is stopped at the period at which ours ends.
 OTHERS = {"hindmarsh-rose": {"HB2": {"UZSTOP": {11: 286}}}}
 # What one takes who does not know beforehand which mesh is enough.
 USUAL_MESH = 200
