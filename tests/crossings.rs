@@ -45,3 +45,59 @@ fn the_asymmetric_orbits_of_lorenz_begin_at_the_pitchfork() {
     );
     assert!((here - 229.42).abs() < 0.02, "{here}");
 }
+
+/// The special points of the first branch of orbits of a system, and the largest value of a parameter on its rows.
+fn first_branch(words: &str, along: &str) -> (Vec<Value>, f64) {
+    let made = command::object(words);
+    let of_first = |name: &str| -> Vec<Value> {
+        let all = made["result"][name].as_array().expect("a list");
+        let first = all.iter().filter(|one| one["branch"] == 0);
+        first.cloned().collect()
+    };
+    let rows = of_first("rows");
+    let values = rows.iter().map(|row| number(row, &format!("/{along}")));
+    (
+        of_first("special"),
+        values.fold(f64::NEG_INFINITY, f64::max),
+    )
+}
+
+#[test]
+fn a_branch_of_asymmetric_orbits_ends_at_its_pitchfork() {
+    let (special, largest) = first_branch(
+        "branch orbits --system lorenz --along r --from 200 --to 330",
+        "r",
+    );
+    let last = special.last().expect("points");
+    assert_eq!(last["label"], "PF", "{special:#?}");
+    for (name, truth) in [("r", PITCHFORK), ("period", PERIOD)] {
+        let value = number(last, &format!("/{name}/value"));
+        let off = number(last, &format!("/{name}/uncertainty"));
+        assert!(
+            (value - truth).abs() <= off && off < 1e-12 * truth.max(100.0),
+            "{name} = {value} ± {off:e} for {truth}"
+        );
+    }
+    assert!(largest < PITCHFORK + 1e-9, "{largest}");
+}
+
+#[test]
+fn a_branch_of_doubled_orbits_ends_at_its_period_doubling() {
+    let words = "branch orbits --system lorenz --along r --from 220 --to 240";
+    let (special, largest) = first_branch(words, "r");
+    let last = special.last().expect("points");
+    assert_eq!(last["label"], "PD", "{special:#?}");
+    let made = command::object(words);
+    let all = made["result"]["special"].as_array().expect("points");
+    let simple = all
+        .iter()
+        .find(|one| one["label"] == "PD" && one["branch"] != 0)
+        .expect("the same doubling on the other branch");
+    let of = |one: &Value, part: &str| number(one, &format!("/r/{part}"));
+    let apart = (of(last, "value") - of(simple, "value")).abs();
+    assert!(apart <= of(last, "uncertainty") + of(simple, "uncertainty"));
+    // A whole period later, and not twice the period, is what is told.
+    let periods = [last, simple].map(|one| number(one, "/period/value"));
+    assert!((periods[0] / periods[1] - 1.0).abs() < 1e-12, "{periods:?}");
+    assert!(largest < of(simple, "value") + 1e-9, "{largest}");
+}

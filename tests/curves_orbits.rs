@@ -200,7 +200,10 @@ fn bifurcations_change_the_way_they_go_where_the_coefficient_is_zero() {
         assert_eq!((long.len(), short.len()), (1, 1), "{label:?}");
         for (a, b) in long.iter().zip(&short) {
             for (a, b) in [(a.driving, b.driving), (a.stiffness, b.stiffness)] {
-                assert!((a.value - b.value).abs() <= a.uncertainty + b.uncertainty);
+                assert!(
+                    (a.value - b.value).abs() <= a.uncertainty + b.uncertainty,
+                    "{label:?}: {a:?} and {b:?}"
+                );
                 assert!(a.uncertainty < 1e-8 * a.value, "{label:?}: {a:?}");
             }
         }

@@ -4,6 +4,7 @@
 use super::conditions::Condition;
 use super::continuation_point::{ContinuationPoint, TangentVector};
 use super::correct::Regular;
+use super::goal::Goal;
 use super::orbit_curve::{DirectedPoint, OrbitCurve, not_near};
 use super::test_function::TestFunction;
 use crate::error::Result;
@@ -17,6 +18,16 @@ const LATE: f64 = 0.005;
 const OFF_SMOOTH: f64 = 0.6;
 /// A slope of the parameter along a branch that is rounding.
 const FLAT_OUT: f64 = 1e-7;
+/// How near to the begin of a step the way back from its end comes, in parts of the step.
+const SAME_BRANCH: f64 = 0.01;
+/// Newton's method for that.
+const LOOK: Goal = Goal {
+    done: 1e-3,
+    iterations: 8,
+    largest: 1.0,
+};
+/// Orbits of fewer variables are no pitchforks: of two in the plane that are mirror images neither would lie within the other.
+const LEAST_VARIABLES: usize = 3;
 
 impl OrbitCurve<'_, '_> {
     /// Whether a step of a branch has come to the next orbit, and not to another that Newton's method has found.
@@ -45,9 +56,36 @@ impl OrbitCurve<'_, '_> {
         Ok(())
     }
 
+    /// Whether a step back from the end of a step of a branch comes to where it began. Next to a crossing a step from one branch may come to the other, which
+    /// is as near to the prediction where it is long.
+    pub(super) fn comes_back(&mut self, from: &DirectedPoint, to: &DirectedPoint) -> bool {
+        let ends = [from, to].map(|at| &at.here);
+        let crosses = self.settings.condition.is_none()
+            && from.here.site.shooting.dimension() >= LEAST_VARIABLES
+            && ends.iter().all(|at| at.branches_nearby());
+        if !crosses {
+            return true;
+        }
+        let DirectedPoint { here, direction } = to;
+        // The plane across the direction in which the step began.
+        let way = self.distance(to, &from.here.site);
+        let predicted = here.site.moved(direction, way);
+        let conditions = self.settings.and(Condition::Plane(direction, &predicted));
+        let free = &self.settings.free;
+        let back = self
+            .corrector
+            .correct_beside(here, predicted.clone(), free, &conditions, LOOK);
+        let Ok(back) = back else {
+            return true;
+        };
+        let off = back.site.from(&from.here.site);
+        let off = self.corrector.in_planes(&from.here, &off);
+        off.dot(&off).sqrt() < SAME_BRANCH * way.abs()
+    }
+
     /// Whether a step of a branch goes on in the same sense. The parameter's change along it times 1 - mu of all multipliers changes its sign at
-    /// branch points alone, by a multiplier that passes 1 (Keller 1977). Behind a sharp turn that a step has jumped across, and behind the Hopf
-    /// point at its end, a branch would be followed back.
+    /// branch points alone, by a multiplier that passes 1 (Keller 1977); but it does not where orbits that are no mirror images of themselves come to their
+    /// pitchfork. Behind a sharp turn that a step has jumped across, and behind the Hopf point at its end, a branch would be followed back.
     pub(super) fn keeps_its_sense(&self, from: &DirectedPoint, to: &DirectedPoint) -> bool {
         /// Of the test function: next to a Hopf point its sign is rounding.
         const SMALL: f64 = 1e-6;
@@ -64,9 +102,10 @@ impl OrbitCurve<'_, '_> {
         let known = slope > FLAT_OUT && fold > SMALL;
         let turns = a.0 * b.0 < 0.0;
         let passes = a.1 * b.1 < 0.0;
+        let is_small = from.here.site.shooting.dimension() < LEAST_VARIABLES;
         !known
             || turns == passes
-            || (!turns && [from, to].iter().all(|at| at.here.branches_nearby()))
+            || (!(turns && is_small) && [from, to].iter().all(|at| at.here.branches_nearby()))
     }
 
     /// The period of the orbit at a distance into a direction.

@@ -314,6 +314,9 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
         if distance > ANY_SENSE && !self.keeps_its_sense(from, &to) {
             return Err(not_near("a step that goes on in the same sense"));
         }
+        if distance > ANY_SENSE && !self.comes_back(from, &to) {
+            return Err(not_near("a step that stays on its branch"));
+        }
         Ok((to, first))
     }
 
@@ -476,7 +479,7 @@ impl OrbitCurve<'_, '_> {
 
 impl OrbitCurve<'_, '_> {
     /// How far an orbit is in the direction of a point, as [`SolutionCurve::correct`] measures it: without what nodes are moved along the flow.
-    fn distance(&self, from: &DirectedPoint, to: &ContinuationPoint) -> f64 {
+    pub(super) fn distance(&self, from: &DirectedPoint, to: &ContinuationPoint) -> f64 {
         let DirectedPoint { here, direction } = from;
         let way = self.corrector.in_planes(here, &to.from(&here.site));
         direction.dot(&way)

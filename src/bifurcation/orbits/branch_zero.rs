@@ -6,7 +6,7 @@ use super::multipliers_together::is_real;
 use super::normal_form::Form;
 use super::orbit_branch::{Back, OrbitBranch};
 use super::orbit_point::{special_orbit, sum_of_pair};
-use super::turning::{goes_on, turns};
+use super::turning::{goes_on, turns, turns_without_fold};
 use crate::bifurcation::Label;
 use crate::bifurcation::general::{FREE, GeneralPoint, Teller};
 use crate::orbit::{DirectedPoint, Palc, Regular, TestFunction, WatchedFunction};
@@ -171,6 +171,12 @@ impl OrbitBranch<'_, '_, '_> {
             {
                 return None;
             }
+            // Likewise, where the symmetry is not known.
+            WatchedFunction::Turn(_)
+                if self.chart.symmetry().is_none() && turns_without_fold(before, &palc.now) =>
+            {
+                return None;
+            }
             WatchedFunction::Turn(_) => Label::Sn,
             WatchedFunction::TestFunction(TestFunction::Fold) => {
                 match turns(before, at, &palc.now) {
@@ -186,11 +192,14 @@ impl OrbitBranch<'_, '_, '_> {
     /// That branches begin at a bifurcation; where the branch ends there, its end.
     fn remember(&mut self, label: Label, orbit: Regular, goes_on: bool) -> Option<GeneralPoint> {
         match label {
-            Label::Pd if !self.chart.loses(&orbit.site) => self.set.doublings.push(Doubling {
-                orbit,
-                before: self.times,
-                visited: false,
-            }),
+            Label::Pd if !self.chart.loses(&orbit.site) => {
+                let visited = self.set.is_doubled(&orbit.site);
+                self.set.doublings.push(Doubling {
+                    orbit,
+                    before: self.times,
+                    visited,
+                });
+            }
             Label::Pf => self.set.pitchforks.push(orbit),
             Label::Sn => {
                 self.turned |= !goes_on;

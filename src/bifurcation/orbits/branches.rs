@@ -382,6 +382,17 @@ impl<'b, 'a> OrbitBranches<'b, 'a> {
         Ok(())
     }
 
+    /// Whether a branch of doubled orbits has come to this doubling.
+    pub fn is_doubled(&self, site: &ContinuationPoint) -> bool {
+        let place = |site: &ContinuationPoint| [site.at[FREE], site.shooting.period().ln()];
+        let here = place(site);
+        let mut known = self.doublings.iter().filter(|one| one.visited);
+        known.any(|one| {
+            let mut pairs = place(&one.orbit.site).into_iter().zip(here);
+            pairs.all(|(a, b)| (a - b).abs() < SAME)
+        })
+    }
+
     /// Along a branch that bifurcates.
     fn aside(
         &mut self,

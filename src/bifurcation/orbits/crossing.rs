@@ -166,25 +166,34 @@ pub(super) fn crossing(
     None
 }
 
-/// Whether the orbits that leave to both sides have the same parameter and period.
+/// Whether the orbits that leave to both sides are mirror images of each other: to the same side of the crossing, and of the same period where the parameter is the
+/// same.
 fn is_pitchfork(chart: Chart<'_>, (site, direction): (&ContinuationPoint, &TangentVector)) -> bool {
-    /// In parts of what the parameter and ln T change by, and rounding.
+    /// In parts of what ln T changes by, and rounding.
     const SAME: f64 = 1e-3;
     const ROUNDING: f64 = 1e-9;
-    let orbit = |sense: f64| {
-        let moved = site.moved(direction, sense * ASIDE);
-        let across = Condition::Plane(direction, &moved);
-        let mut corrector = new_corrector(chart.family()).ok()?;
-        let found = corrector.correct(moved.clone(), &[FREE], &[across], Goal::STEP);
-        let site = found.ok()?.site;
-        Some([site.at[FREE], site.shooting.period().ln()])
-    };
-    let begin = [site.at[FREE], site.shooting.period().ln()];
-    let (Some(one), Some(other)) = (orbit(1.0), orbit(-1.0)) else {
+    let Ok(mut corrector) = new_corrector(chart.family()) else {
         return false;
     };
-    (0..2).all(|i| {
-        let moved = (one[i] - begin[i]).abs().max((other[i] - begin[i]).abs());
-        (one[i] - other[i]).abs() < SAME * moved + ROUNDING * (1.0 + begin[i].abs())
-    })
+    let mut orbit = |site: &ContinuationPoint, condition: &Condition<'_>| {
+        let found = corrector.correct(site.clone(), &[FREE], &[*condition], Goal::STEP);
+        Some(found.ok()?.site)
+    };
+    let mut side = |sense: f64| {
+        let moved = site.moved(direction, sense * ASIDE);
+        orbit(&moved, &Condition::Plane(direction, &moved))
+    };
+    let (Some(one), Some(other)) = (side(1.0), side(-1.0)) else {
+        return false;
+    };
+    let moved = [&one, &other].map(|orbit| orbit.at[FREE] - site.at[FREE]);
+    if moved[0] * moved[1] <= 0.0 {
+        return false;
+    }
+    let held = Condition::Parameter(FREE, one.at[FREE]);
+    let Some(other) = orbit(&other, &held) else {
+        return false;
+    };
+    let [begin, one, other] = [site, &one, &other].map(|orbit| orbit.shooting.period().ln());
+    (one - other).abs() < SAME * (one - begin).abs() + ROUNDING
 }

@@ -9,7 +9,7 @@ use crate::bifurcation::{Criticality, Label};
 use crate::model::Parameter;
 use crate::number::Uncertain;
 use crate::orbit::{
-    Condition, ContinuationPoint, Corrector, Goal, ParametrisedField, Regular, TestFunction,
+    Condition, ContinuationPoint, Corrector, Goal, ParametrisedField, Regular, TestFunction, Tracer,
 };
 use std::ops::ControlFlow::{self, Continue};
 
@@ -53,6 +53,8 @@ pub(super) struct CoefficientZero {
     pub note: Option<String>,
 }
 
+/// Parts of the arcs by which nodes are moved for other solutions.
+const OTHER_NODES: [f64; 3] = [0.27, 0.51, 0.74];
 /// Tolerance of the orbits at which the coefficient is looked at.
 const FINE: f64 = 1e-15;
 
@@ -147,9 +149,26 @@ impl Decided {
         const BESIDE: f64 = 1e-4;
         /// Rounding, in the coordinates.
         const ROUNDING: f64 = 1e-13;
-        let (other, _) = Self::beside(&self.site, curve, self.site.at[curve.held] + BESIDE)?;
+        /// What the largest difference of the solutions counts.
+        const SPREAD: f64 = 3.0;
+        let held = self.site.at[curve.held];
+        let (other, _) = Self::beside(&self.site, curve, held + BESIDE)?;
         let slope = (other.coefficient.value - self.coefficient.value) / BESIDE;
-        let off = (self.coefficient.value.abs() + self.coefficient.uncertainty) / slope.abs();
+        // The coefficient's own uncertainty is that of one orbit; solved for with other nodes it rounds otherwise.
+        let mut spread = 0.0_f64;
+        for part in OTHER_NODES {
+            let mut tracer = Tracer::taylor(FINE).ok()?;
+            let field = curve.family.field(self.site.at);
+            let shifted = self.site.shooting.shifted(&mut tracer, &field, part).ok()?;
+            let site = ContinuationPoint {
+                shooting: shifted,
+                at: self.site.at,
+            };
+            let (again, _) = Self::beside(&site, curve, held)?;
+            spread = spread.max((again.coefficient.value - self.coefficient.value).abs());
+        }
+        let uncertainty = self.coefficient.uncertainty.max(SPREAD * spread);
+        let off = (self.coefficient.value.abs() + uncertainty) / slope.abs();
         let uncertain = |of: &dyn Fn(&Self) -> f64, unit: f64| {
             let (here, there) = (of(self), of(&other));
             let by_slope = off * (there - here).abs() / BESIDE;

@@ -17,6 +17,7 @@ mod hopf;
 mod leaving;
 mod loadings;
 mod locus;
+mod meeting;
 mod multipliers_together;
 pub mod normal_form;
 mod orbit_branch;

@@ -212,12 +212,7 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
             return Break(());
         }
         let turns = now.direction.parameters[FREE] * before.direction.parameters[FREE] <= 0.0;
-        // At a pitchfork the orbits of a branch meet their own mirror images.
-        if turns
-            && !has_folded
-            && let Some(i) = self.crossing_at(site)
-        {
-            self.meets_its_image(i, here, teller);
+        if turns && !has_folded && self.meets_itself(palc, (before, now), teller) {
             return Break(());
         }
         match back {
@@ -295,24 +290,6 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
             let point = refined_point((chart, self.number), &sharp, Label::Pf);
             let _ = self.tell(GeneralEvent::Special(point.classified(way)), teller);
         }
-    }
-
-    /// The branch has come to a pitchfork, behind which there are its mirror images.
-    fn meets_its_image(&mut self, i: usize, here: &Regular, teller: &mut Teller<'_>) {
-        let crossing = &mut self.set.crossings[i];
-        crossing.visited = true;
-        let (at, period) = (crossing.at, crossing.period);
-        if !self.set.inside(at.value) {
-            return;
-        }
-        let end = self.row(here, Some(Label::Pf));
-        let end = GeneralPoint {
-            at: [at.value, end.at[1]],
-            period: Some(period),
-            ..end
-        };
-        let end = end.placed(self.set.branch.system.family, [at.uncertainty, 0.0]);
-        let _ = self.tell(GeneralEvent::Special(end), teller);
     }
 
     /// The crossing that an orbit is next to.

@@ -1,7 +1,7 @@
 //! Distinguishes folds from pitchforks on a step along a branch of orbits: at a fold the parameter turns, at a pitchfork it does not.
 
 use crate::bifurcation::general::FREE;
-use crate::orbit::DirectedPoint;
+use crate::orbit::{DirectedPoint, TestFunction};
 
 /// Slopes of the parameter along the branch below this are rounding. Along a canard the parameter turns with such slopes.
 const ROUNDING: f64 = 1e-8;
@@ -23,4 +23,13 @@ pub(super) fn turns(from: &DirectedPoint, at: &DirectedPoint, to: &DirectedPoint
     let goes_on = from * to > 0.0 && from * at > 0.0 && 2.0 * at.abs() >= least;
     let part = if from * to < 0.0 { ONCE } else { TWICE };
     most < ROUNDING || (!goes_on && at.abs() < part * most)
+}
+
+/// Whether the parameter turns on a step, and no multiplier passes 1: so it is where orbits meet their mirror images.
+pub(super) fn turns_without_fold(from: &DirectedPoint, to: &DirectedPoint) -> bool {
+    let slopes = [from, to].map(|one| one.direction.parameters[FREE]);
+    let folds = [from, to].map(|one| TestFunction::Fold.of(&one.here.spectrum));
+    slopes[0] * slopes[1] < 0.0
+        && slopes.iter().all(|slope| slope.abs() > ROUNDING)
+        && folds[0] * folds[1] > 0.0
 }

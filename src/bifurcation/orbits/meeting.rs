@@ -1,0 +1,174 @@
+//! Where a branch of orbits meets itself, of which no symmetry is told: at the pitchfork behind which its orbits are the mirror images of those before, or at the
+//! period doubling behind which they are the same orbits, half a period later. The parameter turns there, and no multiplier passes 1.
+
+use super::branches::Doubling;
+use super::chart::Chart;
+use super::crossing::{Crossing, crossing};
+use super::normal_form::Form;
+use super::orbit_branch::OrbitBranch;
+use super::orbit_point::refined_point;
+use super::refine::{RefinedPoint, refined};
+use super::turning::turns_without_fold;
+use crate::bifurcation::Label;
+use crate::bifurcation::general::{FREE, GeneralEvent, GeneralPoint, Teller};
+use crate::orbit::{
+    Condition, ContinuationPoint, Corrector, DirectedPoint, Goal, Palc, Regular, ShootingNodes,
+    TestFunction, WatchedFunction,
+};
+
+impl OrbitBranch<'_, '_, '_> {
+    /// Whether the branch has met itself on this step, on which the parameter has turned; then that is told.
+    pub fn meets_itself(
+        &mut self,
+        palc: &mut Palc<'_, '_>,
+        (before, now): (&DirectedPoint, &DirectedPoint),
+        teller: &mut Teller<'_>,
+    ) -> bool {
+        let here = &now.here;
+        if let Some(i) = self.crossing_at(&here.site) {
+            self.meets_its_image(i, here, teller);
+            return true;
+        }
+        if self.chart.symmetry().is_some() || !turns_without_fold(before, now) {
+            return false;
+        }
+        let corrector = &mut *palc.curve.corrector;
+        let Some((near, between)) = between(corrector, (before, now)) else {
+            return false;
+        };
+        if let Some(simple) = half(corrector, &between.site) {
+            let Some(sharp) = doubling(self.chart, &simple) else {
+                return false;
+            };
+            self.meets_its_half(&sharp, teller);
+            return true;
+        }
+        let along = between.along[0].clone();
+        let there = DirectedPoint {
+            here: between,
+            direction: along,
+        };
+        let of = (self.number, self.times);
+        let Some(crossing) = crossing(self.chart, &near, &there, of) else {
+            return false;
+        };
+        self.set.crossings.push(Crossing {
+            // Both ways along the other branch.
+            switch: (there.here.site, there.direction),
+            is_pitchfork: false,
+            ..crossing
+        });
+        self.meets_its_image(self.set.crossings.len() - 1, here, teller);
+        true
+    }
+
+    /// The branch has come to a pitchfork, behind which there are its mirror images.
+    fn meets_its_image(&mut self, i: usize, here: &Regular, teller: &mut Teller<'_>) {
+        let crossing = &mut self.set.crossings[i];
+        crossing.visited |= crossing.of != self.number;
+        let (at, period) = (crossing.at, crossing.period);
+        if !self.set.inside(at.value) {
+            return;
+        }
+        let end = self.row(here, Some(Label::Pf));
+        let end = GeneralPoint {
+            at: [at.value, end.at[1]],
+            period: Some(period),
+            ..end
+        };
+        let end = end.placed(self.set.branch.system.family, [at.uncertainty, 0.0]);
+        let _ = self.tell(GeneralEvent::Special(end), teller);
+    }
+
+    /// The branch has come to the period doubling at which it begins.
+    fn meets_its_half(&mut self, sharp: &RefinedPoint, teller: &mut Teller<'_>) {
+        let site = &sharp.orbit.site;
+        if self.set.inside(site.at[FREE]) {
+            let point = refined_point((self.chart, self.number), sharp, Label::Pd);
+            let point = point.classified(self.chart.normal_form(site, Form::Doubling));
+            let note = Some("orbits of half the period double theirs here".to_owned());
+            let _ = self.tell(
+                GeneralEvent::Special(GeneralPoint { note, ..point }),
+                teller,
+            );
+        }
+        self.set.doublings.push(Doubling {
+            orbit: sharp.orbit.clone(),
+            before: self.times,
+            visited: true,
+        });
+    }
+}
+
+/// Of a step on which the parameter turns: an orbit about where it does, and one half way between two orbits of one parameter to both sides. That one is its
+/// own image.
+fn between(
+    corrector: &mut Corrector<'_>,
+    (before, now): (&DirectedPoint, &DirectedPoint),
+) -> Option<(Regular, Regular)> {
+    /// How often the two are taken nearer to each other; and how near to half way the orbit between them is, in parts of the way.
+    const HALVINGS: usize = 8;
+    const HALF_WAY: f64 = 0.1;
+    let DirectedPoint { here, direction } = before;
+    let orbit = |corrector: &mut Corrector<'_>,
+                 guess: &ContinuationPoint,
+                 condition: &Condition<'_>| {
+        let conditions = [*condition];
+        let found = corrector.correct_beside(here, guess.clone(), &[FREE], &conditions, Goal::STEP);
+        found.ok()
+    };
+    let after = |corrector: &mut Corrector<'_>, way: f64| {
+        let moved = here.site.moved(direction, way);
+        orbit(corrector, &moved, &Condition::Plane(direction, &moved))
+    };
+    let slopes = [before, now].map(|one| one.direction.parameters[FREE]);
+    let way = now.here.site.from(&here.site).dot(direction);
+    let turn = way * slopes[0] / (slopes[0] - slopes[1]);
+    let near = after(corrector, turn)?;
+    let mut reach = 0.5 * way;
+    for _ in 0..HALVINGS {
+        let beside = [turn - reach, turn + reach].map(|way| after(corrector, way));
+        reach *= 0.5;
+        let [Some(one), Some(other)] = beside else {
+            continue;
+        };
+        let held = Condition::Parameter(FREE, one.site.at[FREE]);
+        let Some(other) = orbit(corrector, &other.site, &held) else {
+            continue;
+        };
+        let apart = other.site.from(&one.site);
+        let middle = one.site.moved(&apart, 0.5);
+        let Some(found) = orbit(corrector, &middle, &held) else {
+            continue;
+        };
+        let part = found.site.from(&one.site).dot(&apart) / apart.dot(&apart);
+        if (part - 0.5).abs() < HALF_WAY {
+            return Some((near, found));
+        }
+    }
+    None
+}
+
+/// The orbit that is traversed twice, if this one is.
+fn half(corrector: &mut Corrector<'_>, site: &ContinuationPoint) -> Option<ContinuationPoint> {
+    /// In parts of how far the orbit goes.
+    const ONE: f64 = 1e-5;
+    let field = corrector.family.field(site.at);
+    let (first, half) = (&site.shooting.nodes[0], 0.5 * site.shooting.period());
+    let after = corrector.tracer.flow(&field, first, half, None).ok()?;
+    let off = (field.turned(after, first) - first).component_div(&site.shooting.sizes());
+    if off.amax() > ONE {
+        return None;
+    }
+    let shooting = ShootingNodes::along(&mut corrector.tracer, &field, first, half).ok()?;
+    Some(ContinuationPoint {
+        shooting,
+        at: site.at,
+    })
+}
+
+/// The period doubling near an orbit.
+fn doubling(chart: Chart<'_>, near: &ContinuationPoint) -> Option<RefinedPoint> {
+    let doubles = [WatchedFunction::TestFunction(TestFunction::Doubling)];
+    refined(chart.family(), near, &[FREE], &doubles)
+}
