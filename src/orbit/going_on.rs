@@ -18,8 +18,9 @@ const LATE: f64 = 0.005;
 const OFF_SMOOTH: f64 = 0.6;
 /// A slope of the parameter along a branch that is rounding.
 const FLAT_OUT: f64 = 1e-7;
-/// How near to the begin of a step the way back from its end comes, in parts of the step.
-const SAME_BRANCH: f64 = 0.01;
+/// How near to the begin of a step the way back from its end comes, in parts of the step. Nodes that are moved far along the flow are off by some hundredths; on
+/// another branch the way back ends a step and more away.
+const SAME_BRANCH: f64 = 0.3;
 /// Newton's method for that.
 const LOOK: Goal = Goal {
     done: 1e-3,
@@ -47,7 +48,8 @@ impl OrbitCurve<'_, '_> {
         let (change, late) = (expected - period, to - expected);
         let slope = direction.parameters[self.settings.free[0]].abs();
         if slope > FLAT_OUT && late.abs() > AHEAD * change.abs() + LATE * period.abs() {
-            let middle = self.period_at(here, direction, 0.5 * distance)?;
+            let middle = self.orbit_at(here, direction, 0.5 * distance)?;
+            let middle = middle.site.shooting.period();
             let smooth = period + 0.5 * change + 0.25 * late;
             if (middle - smooth).abs() > OFF_SMOOTH * 0.25 * late.abs() {
                 return Err(not_near("a step along which the period changes smoothly"));
@@ -56,14 +58,18 @@ impl OrbitCurve<'_, '_> {
         Ok(())
     }
 
+    /// Whether branches of a system whose symmetry is not known may cross at a pitchfork beside these orbits.
+    fn may_be_pitchfork(&self, ends: [&DirectedPoint; 2]) -> bool {
+        let family = self.corrector.family;
+        family.is_any_system()
+            && family.dimension() >= LEAST_VARIABLES
+            && ends.iter().all(|at| at.here.branches_nearby())
+    }
+
     /// Whether a step back from the end of a step of a branch comes to where it began. Next to a crossing a step from one branch may come to the other, which
     /// is as near to the prediction where it is long.
     pub(super) fn comes_back(&mut self, from: &DirectedPoint, to: &DirectedPoint) -> bool {
-        let ends = [from, to].map(|at| &at.here);
-        let crosses = self.settings.condition.is_none()
-            && from.here.site.shooting.dimension() >= LEAST_VARIABLES
-            && ends.iter().all(|at| at.branches_nearby());
-        if !crosses {
+        if self.settings.condition.is_some() || !self.may_be_pitchfork([from, to]) {
             return true;
         }
         let DirectedPoint { here, direction } = to;
@@ -86,7 +92,7 @@ impl OrbitCurve<'_, '_> {
     /// Whether a step of a branch goes on in the same sense. The parameter's change along it times 1 - mu of all multipliers changes its sign at
     /// branch points alone, by a multiplier that passes 1 (Keller 1977); but it does not where orbits that are no mirror images of themselves come to their
     /// pitchfork. Behind a sharp turn that a step has jumped across, and behind the Hopf point at its end, a branch would be followed back.
-    pub(super) fn keeps_its_sense(&self, from: &DirectedPoint, to: &DirectedPoint) -> bool {
+    pub(super) fn keeps_its_sense(&mut self, from: &DirectedPoint, to: &DirectedPoint) -> bool {
         /// Of the test function: next to a Hopf point its sign is rounding.
         const SMALL: f64 = 1e-6;
         let (None, &[free]) = (self.settings.condition, &self.settings.free[..]) else {
@@ -102,22 +108,61 @@ impl OrbitCurve<'_, '_> {
         let known = slope > FLAT_OUT && fold > SMALL;
         let turns = a.0 * b.0 < 0.0;
         let passes = a.1 * b.1 < 0.0;
-        let is_small = from.here.site.shooting.dimension() < LEAST_VARIABLES;
         !known
             || turns == passes
-            || (!(turns && is_small) && [from, to].iter().all(|at| at.here.branches_nearby()))
+            || (!turns && [from, to].iter().all(|at| at.here.branches_nearby()))
+            || (turns && self.may_be_pitchfork([from, to]) && self.own_image(from, to).is_some())
     }
 
-    /// The period of the orbit at a distance into a direction.
-    fn period_at(
+    /// Of a step on which the parameter turns: an orbit about where it does, and one half way between two orbits of one parameter to both sides. There is one,
+    /// which is its own image, where these are mirror images of each other, or the same orbit half a period later; not between both sides of a fold.
+    pub(crate) fn own_image(
+        &mut self,
+        from: &DirectedPoint,
+        to: &DirectedPoint,
+    ) -> Option<(Regular, Regular)> {
+        /// How often the two are taken nearer to each other; and how near to half way the orbit between them is, in parts of the way.
+        const HALVINGS: usize = 6;
+        const HALF_WAY: f64 = 0.1;
+        let free = *self.settings.free.first()?;
+        let DirectedPoint { here, direction } = from;
+        let slopes = [from, to].map(|one| one.direction.parameters[free]);
+        let way = self.distance(from, &to.here.site);
+        let turn = way * slopes[0] / (slopes[0] - slopes[1]);
+        let near = self.orbit_at(here, direction, turn).ok()?;
+        let mut reach = 0.5 * way;
+        for _ in 0..HALVINGS {
+            let sides = [turn - reach, turn + reach].map(|way| self.orbit_at(here, direction, way));
+            reach *= 0.5;
+            let [Ok(one), Ok(other)] = sides else {
+                continue;
+            };
+            let held = [Condition::Parameter(free, one.site.at[free])];
+            let Ok(other) = self.corrected(here, other.site, &held) else {
+                continue;
+            };
+            let apart = other.site.from(&one.site);
+            let middle = one.site.moved(&apart, 0.5);
+            let Ok(found) = self.corrected(here, middle, &held) else {
+                continue;
+            };
+            let part = found.site.from(&one.site).dot(&apart) / apart.dot(&apart);
+            if (part - 0.5).abs() < HALF_WAY {
+                return Some((near, found));
+            }
+        }
+        None
+    }
+
+    /// The orbit at a distance into a direction.
+    fn orbit_at(
         &mut self,
         here: &Regular,
         direction: &TangentVector,
         distance: f64,
-    ) -> Result<f64> {
+    ) -> Result<Regular> {
         let predicted = here.site.moved(direction, distance);
         let conditions = self.settings.and(Condition::Plane(direction, &predicted));
-        let found = self.corrected(here, predicted.clone(), &conditions)?;
-        Ok(found.site.shooting.period())
+        self.corrected(here, predicted.clone(), &conditions)
     }
 }

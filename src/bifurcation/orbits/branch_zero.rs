@@ -1,7 +1,7 @@
 //! Bifurcations on a branch of periodic orbits, and the branches that begin there.
 
 use super::branches::Doubling;
-use super::crossing::crossing;
+use super::crossing::{Crossing, crossing};
 use super::multipliers_together::is_real;
 use super::normal_form::Form;
 use super::orbit_branch::{Back, OrbitBranch};
@@ -97,16 +97,20 @@ impl OrbitBranch<'_, '_, '_> {
         if self.chart.symmetry().is_some() {
             return rough;
         }
-        let Some(crossing) = crossing(self.chart, near, before, (self.number, self.times)) else {
+        let of = (self.number, self.times);
+        let found = crossing(self.chart, near, before, of);
+        let Some(crossing) = found.or_else(|| Crossing::rough(self.chart, near, before, of)) else {
             return rough;
         };
-        let point = GeneralPoint {
-            at: [crossing.at.value, rough.at[1]],
-            period: Some(crossing.period),
+        let mut point = GeneralPoint {
             note: (!crossing.is_pitchfork).then(|| "another branch crosses this one".to_owned()),
             ..rough
         };
         let off = crossing.at.uncertainty;
+        if off.is_finite() {
+            point.at[FREE] = crossing.at.value;
+            point.period = Some(crossing.period);
+        }
         match self.crossing_at(&near.site) {
             None => self.set.crossings.push(crossing),
             // Both branches are known.

@@ -32,6 +32,28 @@ pub(super) struct Crossing {
     pub visited: bool,
 }
 
+impl Crossing {
+    /// At an orbit near it, where it is not known better.
+    pub fn rough(
+        chart: Chart<'_>,
+        near: &Regular,
+        before: &DirectedPoint,
+        (of, times): (usize, usize),
+    ) -> Option<Self> {
+        let switch = near.aside(&before.direction)?;
+        let unknown = |x: f64| Uncertain::new(x, f64::INFINITY);
+        Some(Crossing {
+            at: unknown(near.site.at[FREE]),
+            period: unknown(near.site.shooting.period()),
+            is_pitchfork: is_pitchfork(chart, (&switch.0, &switch.1)),
+            switch,
+            of,
+            times,
+            visited: false,
+        })
+    }
+}
+
 /// An orbit of the branch at a value of the parameter.
 struct Sample {
     value: f64,
@@ -187,7 +209,8 @@ fn is_pitchfork(chart: Chart<'_>, (site, direction): (&ContinuationPoint, &Tange
         return false;
     };
     let moved = [&one, &other].map(|orbit| orbit.at[FREE] - site.at[FREE]);
-    if moved[0] * moved[1] <= 0.0 {
+    let varies = |moved: f64| moved.abs() > ROUNDING * (1.0 + site.at[FREE].abs());
+    if moved[0] * moved[1] <= 0.0 && moved.into_iter().any(varies) {
         return false;
     }
     let held = Condition::Parameter(FREE, one.at[FREE]);

@@ -12,8 +12,8 @@ use super::turning::turns_without_fold;
 use crate::bifurcation::Label;
 use crate::bifurcation::general::{FREE, GeneralEvent, GeneralPoint, Teller};
 use crate::orbit::{
-    Condition, ContinuationPoint, Corrector, DirectedPoint, Goal, Palc, Regular, ShootingNodes,
-    TestFunction, WatchedFunction,
+    ContinuationPoint, Corrector, DirectedPoint, Palc, Regular, ShootingNodes, TestFunction,
+    WatchedFunction,
 };
 
 impl OrbitBranch<'_, '_, '_> {
@@ -25,22 +25,25 @@ impl OrbitBranch<'_, '_, '_> {
         teller: &mut Teller<'_>,
     ) -> bool {
         let here = &now.here;
-        if let Some(i) = self.crossing_at(&here.site) {
+        if let Some(i) = self.known_crossing(&here.site) {
             self.meets_its_image(i, here, teller);
             return true;
         }
         if self.chart.symmetry().is_some() || !turns_without_fold(before, now) {
             return false;
         }
-        let corrector = &mut *palc.curve.corrector;
-        let Some((near, between)) = between(corrector, (before, now)) else {
+        let Some((near, between)) = palc.curve.own_image(before, now) else {
             return false;
         };
-        if let Some(simple) = half(corrector, &between.site) {
+        if let Some(simple) = half(palc.curve.corrector, &between.site) {
             let Some(sharp) = doubling(self.chart, &simple) else {
                 return false;
             };
             self.meets_its_half(&sharp, teller);
+            return true;
+        }
+        if let Some(i) = self.known_crossing(&near.site) {
+            self.meets_its_image(i, here, teller);
             return true;
         }
         let along = between.along[0].clone();
@@ -52,14 +55,28 @@ impl OrbitBranch<'_, '_, '_> {
         let Some(crossing) = crossing(self.chart, &near, &there, of) else {
             return false;
         };
-        self.set.crossings.push(Crossing {
+        // Known from the other branch, but not where it is?
+        let rough = self.crossing_at(&near.site);
+        let crossing = Crossing {
             // Both ways along the other branch.
             switch: (there.here.site, there.direction),
             is_pitchfork: false,
+            visited: rough.is_some(),
             ..crossing
-        });
-        self.meets_its_image(self.set.crossings.len() - 1, here, teller);
+        };
+        let i = rough.unwrap_or(self.set.crossings.len());
+        match rough {
+            Some(i) => self.set.crossings[i] = crossing,
+            None => self.set.crossings.push(crossing),
+        }
+        self.meets_its_image(i, here, teller);
         true
+    }
+
+    /// The crossing that an orbit is next to, of which it is known where it is.
+    fn known_crossing(&self, site: &ContinuationPoint) -> Option<usize> {
+        let found = self.crossing_at(site);
+        found.filter(|&i| self.set.crossings[i].at.uncertainty.is_finite())
     }
 
     /// The branch has come to a pitchfork, behind which there are its mirror images.
@@ -98,55 +115,6 @@ impl OrbitBranch<'_, '_, '_> {
             visited: true,
         });
     }
-}
-
-/// Of a step on which the parameter turns: an orbit about where it does, and one half way between two orbits of one parameter to both sides. That one is its
-/// own image.
-fn between(
-    corrector: &mut Corrector<'_>,
-    (before, now): (&DirectedPoint, &DirectedPoint),
-) -> Option<(Regular, Regular)> {
-    /// How often the two are taken nearer to each other; and how near to half way the orbit between them is, in parts of the way.
-    const HALVINGS: usize = 8;
-    const HALF_WAY: f64 = 0.1;
-    let DirectedPoint { here, direction } = before;
-    let orbit = |corrector: &mut Corrector<'_>,
-                 guess: &ContinuationPoint,
-                 condition: &Condition<'_>| {
-        let conditions = [*condition];
-        let found = corrector.correct_beside(here, guess.clone(), &[FREE], &conditions, Goal::STEP);
-        found.ok()
-    };
-    let after = |corrector: &mut Corrector<'_>, way: f64| {
-        let moved = here.site.moved(direction, way);
-        orbit(corrector, &moved, &Condition::Plane(direction, &moved))
-    };
-    let slopes = [before, now].map(|one| one.direction.parameters[FREE]);
-    let way = now.here.site.from(&here.site).dot(direction);
-    let turn = way * slopes[0] / (slopes[0] - slopes[1]);
-    let near = after(corrector, turn)?;
-    let mut reach = 0.5 * way;
-    for _ in 0..HALVINGS {
-        let beside = [turn - reach, turn + reach].map(|way| after(corrector, way));
-        reach *= 0.5;
-        let [Some(one), Some(other)] = beside else {
-            continue;
-        };
-        let held = Condition::Parameter(FREE, one.site.at[FREE]);
-        let Some(other) = orbit(corrector, &other.site, &held) else {
-            continue;
-        };
-        let apart = other.site.from(&one.site);
-        let middle = one.site.moved(&apart, 0.5);
-        let Some(found) = orbit(corrector, &middle, &held) else {
-            continue;
-        };
-        let part = found.site.from(&one.site).dot(&apart) / apart.dot(&apart);
-        if (part - 0.5).abs() < HALF_WAY {
-            return Some((near, found));
-        }
-    }
-    None
 }
 
 /// The orbit that is traversed twice, if this one is.
