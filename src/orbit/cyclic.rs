@@ -190,6 +190,39 @@ pub fn solve<T: Scalar>(maps: &[DMatrix<T>], right: &[DVector<T>]) -> Option<Vec
     reduced.extended(&start, &DVector::from_element(1, T::one()))
 }
 
+/// The solution of u_{k+1} = P_k u_k + r_k for k = 0 .. m - 1, u_m + s b = u_0 with a number s and one condition more, that the product of u_0 with a row is a given
+/// number: it is regular also where one direction of the equations is free, if b lies outside of what they can make. `None` where it is singular.
+pub(crate) fn solve_bordered(
+    maps: &[Matrix],
+    right: &[Vector],
+    column: &Vector,
+    (row, value): (&Vector, f64),
+) -> Option<Vec<Vector>> {
+    let last = maps.len() - 1;
+    let sides = right.iter().enumerate().map(|(k, right)| {
+        let border = if k == last {
+            column.clone()
+        } else {
+            column * 0.0
+        };
+        Matrix::from_columns(&[right.clone(), border])
+    });
+    let sides: Vec<_> = sides.collect();
+    let reduced = reduce(maps, &sides);
+    let n = reduced.size;
+    let end = reduced.scaled_end();
+    let matrix = Matrix::from_fn(n + 1, n + 1, |i, j| match (i < n, j < n) {
+        (true, true) => end.row(i)[j],
+        (true, false) => -end.row(i)[n + 1],
+        (false, true) => row[j],
+        (false, false) => 0.0,
+    });
+    let known = Vector::from_fn(n + 1, |i, _| if i < n { end.row(i)[n] } else { value });
+    let solution = matrix.lu().solve(&known)?;
+    let start = solution.rows(0, n).into_owned();
+    reduced.extended(&start, &Vector::from_column_slice(&[1.0, solution[n]]))
+}
+
 /// Returns the solution of singular equations, as of an orbit in a family, whose first node has the minimum norm. `None` for regular
 /// equations, or if the solution is not finite.
 pub(super) fn solve_singular(maps: &[Matrix], right: &[Vector]) -> Option<Vec<Vector>> {

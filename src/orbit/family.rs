@@ -42,7 +42,7 @@ pub trait ParametrisedField: Sync {
     }
 
     /// What takes a displacement of a point x, where the flow is `flow`, to its part across the flow, in the variables in which
-    /// displacements are measured.
+    /// displacements are measured. Under a forcing it is a displacement at one phase, which it leaves as it is.
     fn across(&self, _x: &Vector, flow: &Vector) -> Matrix {
         projection(flow)
     }
@@ -59,10 +59,14 @@ pub trait ParametrisedField: Sync {
     }
 }
 
-/// As [`ParametrisedField::across`], with the displacement measured in other units than the variables, of which these are the sizes.
-pub fn across_in_units(units: &[f64], flow: &Vector) -> Matrix {
+/// As [`ParametrisedField::across`], with the displacement measured in other units than the variables, of which these are the sizes; from one plane of a phase
+/// to the next there is nothing to leave out.
+pub fn across_in_units(units: &[f64], flow: &Vector, is_forced: bool) -> Matrix {
     let outward = Matrix::from_diagonal(&Vector::from_column_slice(units));
-    projection(&(&outward * flow)) * outward
+    match is_forced {
+        true => outward,
+        false => projection(&(&outward * flow)) * outward,
+    }
 }
 
 /// The projection across a direction.

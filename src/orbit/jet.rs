@@ -127,15 +127,35 @@ impl<'a> PoincareMaps<'a> {
 
     /// C(u, u, u*), the third derivative of the k-th map.
     pub fn third(&mut self, k: usize, u: &CVector) -> Option<CVector> {
+        let u = Along::parts(u);
+        self.along(k, &u.directions, [u.at, u.at, u.at.conjugate()])
+    }
+
+    /// C(u, u, u).
+    pub fn cube(&mut self, k: usize, u: &CVector) -> Option<CVector> {
+        let u = Along::parts(u);
+        self.along(k, &u.directions, [u.at; 3])
+    }
+
+    /// C(u, u, v) of real displacements.
+    pub fn third_of_two(&mut self, k: usize, u: &Vector, v: &Vector) -> Option<CVector> {
+        let [(u, of_u), (v, of_v)] = [u, v].map(normed);
+        let [u_at, v_at] = [[of_u, 0.0], [0.0, of_v]].map(|at| C2::from(at.map(C::from)));
+        self.along(k, &[u, v], [u_at, u_at, v_at])
+    }
+
+    /// The third derivative of the k-th map of three displacements, in coordinates along two directions.
+    fn along(&mut self, k: usize, directions: &[Vector; 2], at: [C2; 3]) -> Option<CVector> {
+        let [a, b] = directions;
         if let Some(jets) = &self.jets {
-            let u = in_plane(u);
-            return Some(jets[k].third(&u, &u, &u.conjugate()));
+            let axes = nalgebra::Matrix2::new(a[0], b[0], a[1], b[1]).map(C::from);
+            let [u, v, w] = at.map(|at| axes * at);
+            return Some(jets[k].third(&u, &v, &w));
         }
-        let [(a, of_a), (b, of_b)] = parts(u);
-        let directions = [a, b].map(|u| self.direction(k, &u));
+        let directions = [a, b].map(|u| self.direction(k, u));
         let jet = self.jet(k, directions)?;
-        let u = C2::new(C::from(of_a), C::I * of_b);
-        Some(jet.third(&u, &u, &u.conjugate()))
+        let [u, v, w] = at;
+        Some(jet.third(&u, &v, &w))
     }
 
     /// The direction of the states that a displacement in the k-th plane is.
@@ -178,10 +198,35 @@ fn in_plane(u: &CVector) -> C2 {
 
 /// The real and the imaginary part, each of order one and its size.
 fn parts(u: &CVector) -> [(Vector, f64); 2] {
-    [u.map(|x| x.re), u.map(|x| x.im)].map(|part| {
-        let size = part.amax();
-        (if size > 0.0 { part / size } else { part }, size)
-    })
+    [u.map(|x| x.re), u.map(|x| x.im)].map(|part| normed(&part))
+}
+
+/// A vector of order one, and its size.
+fn normed(part: &Vector) -> (Vector, f64) {
+    let size = part.amax();
+    let one = if size > 0.0 {
+        part / size
+    } else {
+        part.clone()
+    };
+    (one, size)
+}
+
+/// A displacement along two real directions.
+struct Along {
+    directions: [Vector; 2],
+    at: C2,
+}
+
+impl Along {
+    /// Along its real and its imaginary part.
+    fn parts(u: &CVector) -> Self {
+        let [(a, of_a), (b, of_b)] = parts(u);
+        Along {
+            directions: [a, b],
+            at: C2::new(C::from(of_a), C::I * of_b),
+        }
+    }
 }
 
 /// How long a displacement is across the flow: the matrix that gives its part there, from the state and the rates at that point.

@@ -1,9 +1,9 @@
 //! A system whose equations were read, over one or two of its parameters.
 
-use super::family::ParametrisedField;
+use super::family::{ParametrisedField, across_in_units};
 use super::settle::axis;
 use crate::error::{Error, Result};
-use crate::field::{Vector, place};
+use crate::field::{Matrix, Vector, place};
 use crate::integrate::AnyField;
 use crate::model::TextSystem;
 use std::borrow::Cow;
@@ -134,6 +134,10 @@ impl ParametrisedField for OverText<'_> {
 
     fn is_any_system(&self) -> bool {
         true
+    }
+
+    fn across(&self, _x: &Vector, flow: &Vector) -> Matrix {
+        across_in_units(&vec![1.0; flow.len()], flow, self.system.phase().is_some())
     }
 
     fn normal(&self, _x: &Vector, flow: Vector) -> Vector {

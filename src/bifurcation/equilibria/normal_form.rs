@@ -209,6 +209,40 @@ pub(in crate::bifurcation) fn unfolding(label: Label, all: &[NormalFormCoefficie
             criticality: stable(product("a", "b")),
             ..unknown
         },
+        // Of w_0' = w_1, w_1' = a w_0^2 + (b - 2 a) w_0 w_1, which the map approximates for the time 1, as at a Bogdanov-Takens point.
+        Label::R1 => {
+            let flow = of("a").zip(of("b")).and_then(|(a, b)| {
+                let off = b.uncertainty + 2.0 * a.uncertainty;
+                Some(sign(a)? * sign(Uncertain::new(b.value - 2.0 * a.value, off))?)
+            });
+            Unfolding {
+                criticality: stable(flow),
+                ..unknown
+            }
+        }
+        // Of w_0' = w_1, w_1' = 4 C_1 w_0^3 - (2 D_1 + 6 C_1) w_0^2 w_1, which its square does.
+        Label::R2 => {
+            let flow = of("C_1").zip(of("D_1")).and_then(|(c, d)| {
+                let off = d.uncertainty + 3.0 * c.uncertainty;
+                sign(Uncertain::new(-d.value - 3.0 * c.value, off))
+            });
+            let case = match of("C_1").and_then(sign) {
+                Some(s) => format!("s = {s}"),
+                None => "undecided case".into(),
+            };
+            Unfolding {
+                criticality: stable(flow),
+                case: Some(case),
+            }
+        }
+        Label::R3 => Unfolding {
+            criticality: stable(of("C_1").and_then(sign)),
+            ..unknown
+        },
+        Label::R4 => Unfolding {
+            criticality: stable(of("Re A_0").and_then(sign)),
+            ..unknown
+        },
         Label::Zh => {
             let theta = of("theta").and_then(sign);
             let s = of("s").and_then(sign);

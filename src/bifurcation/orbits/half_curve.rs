@@ -3,15 +3,17 @@
 use super::branches::{LONGEST, ROUGH, new_corrector};
 use super::chart::Chart;
 use super::codimension_two::{codimension_two, met_along};
+use super::codimension_two_form::coefficients;
 use super::cubic_coefficient::Decided;
 use super::degenerate_hopf::DegenerateHopfPoints;
 use super::multipliers_together::is_real;
 use super::orbit_point::{orbit_point, pass, special_orbit, sum_of_pair};
 use super::top::top;
-use crate::bifurcation::Label;
+use crate::bifurcation::equilibria::normal_form::{Unfolding, unfolding};
 use crate::bifurcation::general::{
     Classified, GeneralCurve, GeneralEvent, GeneralObserver, GeneralPoint, SAME,
 };
+use crate::bifurcation::{Criticality, Label};
 use crate::continuation::{Met, Stop};
 use crate::error::Result;
 use crate::field::Vector;
@@ -365,7 +367,8 @@ impl<'s, 'c, 'a> HalfCurve<'s, 'c, 'a> {
             Classified::Never => None,
             _ => self.way(&orbit.site),
         };
-        self.angled(point, orbit).classified(way)
+        let point = self.angled(point, orbit).classified(way);
+        self.unfolded(point, orbit)
     }
 
     /// A coordinate is stationary along the curve here: a cusp, where both are, or else the largest K, if it is that.
@@ -393,7 +396,40 @@ impl<'s, 'c, 'a> HalfCurve<'s, 'c, 'a> {
             period: Some(top.period),
             ..orbit_point(self.chart, self.number, &top.orbit, Some(label))
         };
-        self.special(self.angled(point, &top.orbit))
+        let point = self.angled(point, &top.orbit);
+        self.special(self.unfolded(point, &top.orbit))
+    }
+
+    /// With the coefficients of the normal form of a point of codimension two, and what these say; of equal parts they are not told.
+    fn unfolded(&self, point: GeneralPoint, orbit: &Regular) -> GeneralPoint {
+        let (Some(label), None) = (point.label, self.chart.symmetry()) else {
+            return point;
+        };
+        let normal_form = coefficients(self.chart.family(), &orbit.site, label);
+        if normal_form.is_empty() {
+            return point;
+        }
+        let Unfolding { criticality, case } = unfolding(label, &normal_form);
+        let alone = match &normal_form[..] {
+            [alone] => Some(alone.value),
+            _ => None,
+        };
+        // That of the torus has a pole at the other resonances.
+        let of_torus = match label {
+            Label::R4 => point.coefficient.zip(point.coefficient_uncertainty),
+            _ => None,
+        };
+        let coefficient = alone.map(|alone| (alone.value, alone.uncertainty));
+        let (coefficient, coefficient_uncertainty) = coefficient.or(of_torus).unzip();
+        let decided = criticality.filter(|one| *one != Criticality::Undecided);
+        GeneralPoint {
+            criticality: decided.or(point.criticality).or(criticality),
+            coefficient,
+            coefficient_uncertainty,
+            note: point.note.or(case),
+            normal_form,
+            ..point
+        }
     }
 
     /// A curve of asymmetric orbits has come to symmetric ones: to the degenerate pitchfork at this value of the coordinate.

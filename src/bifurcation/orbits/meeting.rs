@@ -36,10 +36,7 @@ impl OrbitBranch<'_, '_, '_> {
             return false;
         };
         if let Some(simple) = half(palc.curve.corrector, &between.site) {
-            let Some(sharp) = doubling(self.chart, &simple) else {
-                return false;
-            };
-            self.meets_its_half(&sharp, teller);
+            self.meets_its_half(&near, doubling(self.chart, &simple), teller);
             return true;
         }
         if let Some(i) = self.known_crossing(&near.site) {
@@ -52,7 +49,9 @@ impl OrbitBranch<'_, '_, '_> {
             direction: along,
         };
         let of = (self.number, self.times);
-        let Some(crossing) = crossing(self.chart, &near, &there, of) else {
+        let crossing = crossing(self.chart, &near, &there, of);
+        let Some(crossing) = crossing.or_else(|| Crossing::rough(self.chart, &near, &there, of))
+        else {
             return false;
         };
         // Known from the other branch, but not where it is?
@@ -97,23 +96,34 @@ impl OrbitBranch<'_, '_, '_> {
         let _ = self.tell(GeneralEvent::Special(end), teller);
     }
 
-    /// The branch has come to the period doubling at which it begins.
-    fn meets_its_half(&mut self, sharp: &RefinedPoint, teller: &mut Teller<'_>) {
-        let site = &sharp.orbit.site;
-        if self.set.inside(site.at[FREE]) {
-            let point = refined_point((self.chart, self.number), sharp, Label::Pd);
-            let point = point.classified(self.chart.normal_form(site, Form::Doubling));
+    /// The branch has come to the period doubling at which it begins, near an orbit.
+    fn meets_its_half(
+        &mut self,
+        near: &Regular,
+        sharp: Option<RefinedPoint>,
+        teller: &mut Teller<'_>,
+    ) {
+        let point = match &sharp {
+            Some(sharp) => {
+                let way = self.chart.normal_form(&sharp.orbit.site, Form::Doubling);
+                refined_point((self.chart, self.number), sharp, Label::Pd).classified(way)
+            }
+            None => self.row(near, Some(Label::Pd)),
+        };
+        if self.set.inside(point.at[FREE]) {
             let note = Some("orbits of half the period double theirs here".to_owned());
             let _ = self.tell(
                 GeneralEvent::Special(GeneralPoint { note, ..point }),
                 teller,
             );
         }
-        self.set.doublings.push(Doubling {
-            orbit: sharp.orbit.clone(),
-            before: self.times,
-            visited: true,
-        });
+        if let Some(RefinedPoint { orbit, .. }) = sharp {
+            self.set.doublings.push(Doubling {
+                orbit,
+                before: self.times,
+                visited: true,
+            });
+        }
     }
 }
 

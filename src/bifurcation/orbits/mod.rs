@@ -5,6 +5,7 @@ mod branch_zero;
 mod branches;
 mod chart;
 mod codimension_two;
+mod codimension_two_form;
 mod crosscheck;
 mod crossing;
 mod cubic_coefficient;

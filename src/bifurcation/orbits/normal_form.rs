@@ -30,7 +30,7 @@ use crate::orbit::{
 use nalgebra::Complex;
 use std::f64::consts::PI;
 
-type C = Complex<f64>;
+pub(super) type C = Complex<f64>;
 
 /// What bifurcates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -105,12 +105,18 @@ fn classified(
     let Some([followed, told]) = coefficient(family, site, form) else {
         return (Uncertain::new(0.0, f64::INFINITY), Criticality::Undecided);
     };
-    // To which side it goes does not depend on the units of length.
-    let supercritical = match form {
-        Form::Doubling => followed.value > 0.0,
-        Form::Torus | Form::Pitchfork => followed.value < 0.0,
+    // To which side it goes does not depend on the units of length: by those in which it is known better.
+    let margin = |x: &Uncertain| x.value.abs() / x.uncertainty;
+    let decisive = if margin(&told) > margin(&followed) {
+        told
+    } else {
+        followed
     };
-    let criticality = if followed.value.abs() <= followed.uncertainty {
+    let supercritical = match form {
+        Form::Doubling => decisive.value > 0.0,
+        Form::Torus | Form::Pitchfork => decisive.value < 0.0,
+    };
+    let criticality = if decisive.value.abs() <= decisive.uncertainty {
         Criticality::Undecided
     } else if supercritical {
         Criticality::Supercritical
@@ -126,17 +132,40 @@ fn coefficient(
     site: &ContinuationPoint,
     form: Form,
 ) -> Option<[Uncertain; 2]> {
-    let site = finely_cut(family, site)?;
     let axes = match form {
         Form::Pitchfork => Axes::Symmetry,
         _ => Axes::Any,
     };
+    let [first, second] = solutions(family, site, axes, &|circle| match form {
+        Form::Torus => circle.torus(),
+        Form::Doubling => circle.doubling(),
+        Form::Pitchfork => circle.pitchfork(),
+    })?;
+    let finite = |both: &[f64; 2]| both.iter().all(|x| x.is_finite());
+    (finite(&first) && finite(&second)).then(|| [0, 1].map(|i| between(first[i], second[i])))
+}
+
+/// The first of two solutions, by what they differ.
+pub(super) fn between(first: f64, second: f64) -> Uncertain {
+    let uncertainty = SAFETY * (second - first).abs() + LEAST * first.abs();
+    Uncertain::new(first, uncertainty)
+}
+
+/// What is found on two circles: of other nodes, by maps of another tolerance.
+pub(super) fn solutions<R>(
+    family: &dyn ParametrisedField,
+    site: &ContinuationPoint,
+    axes: Axes,
+    of: &dyn Fn(&mut Circle<'_>) -> Option<R>,
+) -> Option<[R; 2]> {
+    let site = finely_cut(family, site)?;
     let [first, second] = SOLUTIONS.map(|(tolerance, parts)| {
         let cut = cut_into(parts, family, &site)?;
         let followed: Across<'_> = &|x, flow| family.across(x, flow);
+        let is_forced = family.field(site.at).phase().is_some();
         let in_units = family
             .units()
-            .map(|units| move |_: &Vector, flow: &Vector| across_in_units(units, flow));
+            .map(|units| move |_: &Vector, flow: &Vector| across_in_units(units, flow, is_forced));
         let told = in_units.as_ref().map(|across| across as Across<'_>);
         let measures: Vec<_> = [followed].into_iter().chain(told).collect();
         let mut squares = squares(family, &cut, axes, &measures)?.into_iter();
@@ -147,27 +176,14 @@ fn coefficient(
             period: cut.shooting.period(),
         }
         .begun_at_the_top(axes);
-        let coefficient = match form {
-            Form::Torus => circle.torus()?,
-            Form::Doubling => circle.doubling()?,
-            Form::Pitchfork => circle.pitchfork()?,
-        };
-        coefficient
-            .iter()
-            .all(|x| x.is_finite())
-            .then_some(coefficient)
+        of(&mut circle)
     });
-    let (first, second) = (first?, second?);
-    Some([0, 1].map(|i| {
-        let (first, second) = (first[i], second[i]);
-        let uncertainty = SAFETY * (second - first).abs() + LEAST * first.abs();
-        Uncertain::new(first, uncertainty)
-    }))
+    Some([first?, second?])
 }
 
 /// An orbit with the maps around it.
-struct Circle<'a> {
-    maps: PoincareMaps<'a>,
+pub(super) struct Circle<'a> {
+    pub maps: PoincareMaps<'a>,
     /// What the square of a displacement in a node's plane adds up to, over the arc that begins there.
     squares: Vec<Matrix>,
     /// The same in the units in which lengths are told, where these are others.
@@ -265,9 +281,14 @@ impl Circle<'_> {
 
     /// A coefficient of q as one of an eigenvector of which the mean over the period of |q|^2 is 1, both ways in which that is measured.
     fn for_length_one(&self, coefficient: f64, q: &[CVector]) -> [f64; 2] {
-        let followed = coefficient / self.mean_square(&self.squares, q);
-        let told = self.told.as_ref();
-        let told = told.map(|squares| coefficient / self.mean_square(squares, q));
+        self.for_length(coefficient, 2, q)
+    }
+
+    /// The same of a coefficient that falls with this power of the length.
+    pub fn for_length(&self, coefficient: f64, power: i32, q: &[CVector]) -> [f64; 2] {
+        let by = |squares: &[Matrix]| coefficient / self.mean_square(squares, q).sqrt().powi(power);
+        let followed = by(&self.squares);
+        let told = self.told.as_ref().map(|squares| by(squares));
         [followed, told.unwrap_or(followed)]
     }
 
@@ -290,18 +311,12 @@ impl Circle<'_> {
         let h11 = self.solve(one, &length)?;
         let square = self.each(|maps, k| maps.second(k, &q[k], &q[k]))?;
         let h20 = self.solve(mu * mu, &square)?;
-        let cube = self.each(|maps, k| {
-            Some(
-                maps.third(k, &q[k])?
-                    + maps.second(k, &q[k], &h11[k])? * C::from(2.0)
-                    + maps.second(k, &conjugate[k], &h20[k])?,
-            )
-        })?;
+        let cube = self.torus_cube(&q, &conjugate, &h11, &h20)?;
         let cubic = self.solvability(mu, &p, &q, &cube).re / 2.0;
         Some(self.for_length_one(cubic, &q))
     }
 
-    fn each(
+    pub fn each(
         &mut self,
         of: impl Fn(&mut PoincareMaps<'_>, usize) -> Option<CVector>,
     ) -> Option<Vec<CVector>> {
@@ -332,22 +347,36 @@ impl Circle<'_> {
     }
 
     /// u_{k+1} = P_k u_k + r_k with u_m = mu u_0.
-    fn solve(&self, mu: C, right: &[CVector]) -> Option<Vec<CVector>> {
+    pub fn solve(&self, mu: C, right: &[CVector]) -> Option<Vec<CVector>> {
         let mut right = right.to_vec();
         *right.last_mut()? /= mu;
         around(self.maps.linear(), mu.inv(), &right)
     }
 
+    /// The same for a multiplier mu, where the right-hand sides have no part along what is free: the mean of the solutions a little beside it, in which what is
+    /// free cancels.
+    pub fn solve_singular(&self, mu: C, right: &[CVector]) -> Option<Vec<CVector>> {
+        let beside = |side: f64| self.solve(mu * (1.0 + side * BESIDE), right);
+        let (below, above) = (beside(-1.0)?, beside(1.0)?);
+        let pairs = below.into_iter().zip(above);
+        Some(pairs.map(|(a, b)| (a + b) * C::from(0.5)).collect())
+    }
+
     /// q_{k+1} = P_k q_k, q_m = mu q_0; and the same of the transposed maps, p_k for the k-th map. By
     /// inverse iteration a little beside the multiplier.
-    fn eigenvectors(&self, mu: C) -> Option<(Vec<CVector>, Vec<CVector>)> {
+    pub fn eigenvectors(&self, mu: C) -> Option<(Vec<CVector>, Vec<CVector>)> {
+        self.eigenvectors_beside(mu, BESIDE)
+    }
+
+    /// The same at this distance beside it: of a double multiplier they are the eigenvector to about so much, as next to it the equations are singular twice.
+    pub fn eigenvectors_beside(&self, mu: C, beside: f64) -> Option<(Vec<CVector>, Vec<CVector>)> {
         const ITERATIONS: usize = 3;
         let (maps, count) = (self.maps.linear(), self.dimension());
         let last = maps.len() - 1;
         // From the last plane but one down to the first, and from the last plane at last, where the circle closes.
         let mut transposed: Vec<_> = maps[..last].iter().rev().map(Matrix::transpose).collect();
         transposed.push(maps[last].transpose());
-        let factor = (mu * (1.0 + BESIDE)).inv();
+        let factor = (mu * (1.0 + beside)).inv();
         let kernel = |maps: &[Matrix]| {
             // Real, so that what belongs to a real multiplier stays real; and only where the circle closes, so that it is the
             // return map's.
@@ -370,7 +399,7 @@ impl Circle<'_> {
 
     /// What keeps g_{k+1} = P_k g_k + r_k, g_m = mu g_0, from being solvable: x, where x mu q_0 has to be added to g_m; divided by
     /// mu.
-    fn solvability(&self, mu: C, p: &[CVector], q: &[CVector], right: &[CVector]) -> C {
+    pub fn solvability(&self, mu: C, p: &[CVector], q: &[CVector], right: &[CVector]) -> C {
         let last = right.len() - 1;
         let mut sum = C::from(0.0);
         for (k, (p, r)) in p.iter().zip(right).enumerate() {
