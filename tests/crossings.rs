@@ -81,6 +81,49 @@ fn a_branch_of_asymmetric_orbits_ends_at_its_pitchfork() {
     assert!(largest < PITCHFORK + 1e-9, "{largest}");
 }
 
+/// x' = x - x^3 + e cos t: the orbit about 0, its own image half a period later, and the two that begin at its pitchfork. That is where x(pi) = -x(0) and the integral of
+/// 1 - 3 x^2 vanishes: by mpmath's `odefun` in 22 digits.
+#[test]
+fn forced_orbits_in_one_well_end_where_the_orbit_through_both_becomes_stable() {
+    const WELLS: f64 = 0.931_053_696_634_958_1;
+    let file = command::folder("two-wells").join("wells.toml");
+    let text = r#"name = "wells"
+states = ["x"]
+period = "2*pi"
+
+[parameters]
+e = 0.5
+
+[rates]
+x = "x - x^3 + e*cos(t)"
+
+[start]
+x = 1.0
+"#;
+    std::fs::write(&file, text).expect("a file");
+    let file = file.to_str().expect("a path");
+    for range in ["--from 0.1 --to 3", "--from 3 --to 0.1"] {
+        let made = command::object(&format!("branch orbits --system {file} --along e {range}"));
+        let special = made["result"]["special"].as_array().expect("points");
+        let of = |label: &str| -> Vec<&Value> {
+            special.iter().filter(|one| one["label"] == label).collect()
+        };
+        let pitchforks = of("PF");
+        assert_eq!(pitchforks.len(), 2, "{special:#?}");
+        for one in pitchforks {
+            let value = number(one, "/e/value");
+            let off = number(one, "/e/uncertainty");
+            assert!(
+                (value - WELLS).abs() <= off && off < 1e-8,
+                "{value} ± {off:e}"
+            );
+        }
+        // No branch comes back to where it began.
+        let ends = of("EP");
+        assert_eq!(ends.len(), 3, "{special:#?}");
+    }
+}
+
 #[test]
 fn a_branch_of_doubled_orbits_ends_at_its_period_doubling() {
     let words = "branch orbits --system lorenz --along r --from 220 --to 240";

@@ -27,7 +27,7 @@ const LOOK: Goal = Goal {
     iterations: 8,
     largest: 1.0,
 };
-/// Orbits of fewer variables are no pitchforks: of two in the plane that are mirror images neither would lie within the other.
+/// Orbits of fewer variables, but of forced systems, are no pitchforks: of two in the plane that are mirror images neither would lie within the other.
 const LEAST_VARIABLES: usize = 3;
 
 impl OrbitCurve<'_, '_> {
@@ -61,9 +61,10 @@ impl OrbitCurve<'_, '_> {
     /// Whether branches of a system whose symmetry is not known may cross at a pitchfork beside these orbits.
     fn may_be_pitchfork(&self, ends: [&DirectedPoint; 2]) -> bool {
         let family = self.corrector.family;
+        let is_forced = || family.field(ends[0].here.site.at).phase().is_some();
         family.is_any_system()
-            && family.dimension() >= LEAST_VARIABLES
             && ends.iter().all(|at| at.here.branches_nearby())
+            && (family.dimension() >= LEAST_VARIABLES || is_forced())
     }
 
     /// Whether a step back from the end of a step of a branch comes to where it began. Next to a crossing a step from one branch may come to the other, which
