@@ -102,14 +102,13 @@ impl OrbitBranch<'_, '_, '_> {
         let Some(crossing) = found.or_else(|| Crossing::rough(self.chart, near, before, of)) else {
             return rough;
         };
-        let mut point = GeneralPoint {
-            note: (!crossing.is_pitchfork).then(|| "another branch crosses this one".to_owned()),
-            ..rough
-        };
+        let mut point = rough;
         let off = crossing.at.uncertainty;
         if off.is_finite() {
             point.at[FREE] = crossing.at.value;
             point.period = Some(crossing.period);
+            let other = !crossing.is_pitchfork;
+            point.note = other.then(|| "another branch crosses this one".to_owned());
         }
         match self.crossing_at(&near.site) {
             None => self.set.crossings.push(crossing),
