@@ -107,6 +107,7 @@ mod more_states;
 mod multiple_points;
 #[cfg(target_arch = "x86_64")]
 mod new_parameters;
+mod normal_forms_of_autonomous_resonances;
 mod normal_forms_of_resonances;
 mod normal_forms_of_systems;
 mod numbers;

@@ -65,7 +65,8 @@ Y = 0.0
     }
 }
 
-fn write(name: &str, text: &str) -> String {
+/// The path of a file with this text.
+pub fn write(name: &str, text: &str) -> String {
     let folder = command::folder(&format!("normal-form-{name}"));
     let path = folder.join(format!("{name}.toml"));
     std::fs::write(&path, text).expect("a file");
@@ -78,7 +79,12 @@ fn point(kind: &str, file: &str, ranges: [(&str, &str); 2], label: &str) -> Valu
     let words = format!(
         "locus {kind} --system {file} --in {one},{other} --range {one}={of_one} --range {other}={of_other}"
     );
-    let made = command::object(&words);
+    only(&words, label)
+}
+
+/// The only point with this label that a run finds.
+pub fn only(words: &str, label: &str) -> Value {
+    let made = command::object(words);
     let special = made["result"]["special"].as_array().expect("points");
     let mut found = special.iter().filter(|point| point["label"] == label);
     let point = found.next().unwrap_or_else(|| panic!("{special:#?}"));
@@ -87,7 +93,7 @@ fn point(kind: &str, file: &str, ranges: [(&str, &str); 2], label: &str) -> Valu
 }
 
 /// The coefficients are these, within their bounds, which are sharp.
-fn assert_coefficients(point: &Value, all: &[(&str, f64)]) {
+pub fn assert_coefficients(point: &Value, all: &[(&str, f64)]) {
     for (name, exact) in all {
         let [value, off] = ["value", "uncertainty"]
             .map(|part| number(point, &format!("/normal_form/{name}/{part}")));
