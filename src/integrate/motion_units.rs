@@ -35,6 +35,15 @@ const ROUGH: f64 = 1e-6;
 /// A state that moves by less than this part of itself does not move.
 const STILL: f64 = 1e-3;
 
+/// These sizes, and of a state whose size nothing tells, as it is 0 and stays so, that of the others: their geometric mean, or 1 where nothing tells any.
+fn completed(sizes: &[f64]) -> Vec<f64> {
+    let known = sizes.iter().filter(|size| size.is_normal());
+    let logarithms: Vec<f64> = known.map(|size| size.abs().log2()).collect();
+    let mean = logarithms.iter().sum::<f64>() / logarithms.len().max(1) as f64;
+    let complete = |size: &f64| if size.is_normal() { *size } else { mean.exp2() };
+    sizes.iter().map(complete).collect()
+}
+
 /// The nearest power of two.
 fn round(x: f64) -> f64 {
     x.log2().round().exp2()
@@ -129,8 +138,7 @@ impl MotionUnits {
         let time = 1.0 / fastest(&jacobian);
         let time = if time.is_normal() { time } else { 1.0 };
         let sizes = sizes_at_start((&field, &jacobian), start, time);
-        let size = |size: &f64| if size.is_normal() { *size } else { 1.0 };
-        Ok(Self::new(sizes.iter().map(size).collect(), time))
+        Ok(Self::new(completed(sizes.as_slice()), time))
     }
 
     /// With which a run from here that lasts so long begins: those at its start, and of a state that begins at 0 no less than a tiny part of what

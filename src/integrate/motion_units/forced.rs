@@ -1,6 +1,6 @@
 //! The units of a run of a system that depends on time itself.
 
-use super::{MotionUnits, fastest, round, sizes_at_start};
+use super::{MotionUnits, completed, fastest, round, sizes_at_start};
 use crate::error::Result;
 use crate::field::Vector;
 use crate::integrate::AnyField;
@@ -47,9 +47,7 @@ impl MotionUnits {
             }
             way = jacobian.abs() * way * time;
         }
-        let sizes = sizes.iter().take(last);
-        let sizes = sizes.map(|&size| if size.is_normal() { size } else { 1.0 });
-        Ok(Self::new(sizes.collect(), time).rounded())
+        Ok(Self::new(completed(&sizes.as_slice()[..last]), time).rounded())
     }
 }
 
