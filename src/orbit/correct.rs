@@ -59,7 +59,7 @@ impl Regular {
     }
 
     /// Whether a multiplier is so near to 1 that a branch point may be next to this orbit.
-    pub(super) fn branches_nearby(&self) -> bool {
+    pub(crate) fn branches_nearby(&self) -> bool {
         /// Of ln mu.
         const NEAR: f64 = 1.0;
         let near = |one: &LogEigenvalue| one.ln_abs.abs() < NEAR && one.arg.abs() < NEAR;
@@ -373,7 +373,8 @@ impl<'a> Corrector<'a> {
             let small = (size < goal.done && left_is_small)
                 || (size < NOISE && size > 0.3 * last)
                 || (iterations == 1 && size < NEXT_TO_NOTHING);
-            let done = small && !coarse;
+            // What is only looked at roughly the coarse flows tell.
+            let done = small && (!coarse || goal.done > FAR);
             expected = if iterations == 1 { size.powi(2) } else { left };
             ways = linear.ways(&site.shooting, &correction.durations);
             site = site.moved(&correction, 1.0);

@@ -21,9 +21,9 @@ const FLAT_OUT: f64 = 1e-7;
 /// How near to the begin of a step the way back from its end comes, in parts of the step. Nodes that are moved far along the flow are off by some hundredths; on
 /// another branch the way back ends a step and more away.
 const SAME_BRANCH: f64 = 0.3;
-/// Newton's method for that.
+/// Newton's method for that: mostly one iteration.
 const LOOK: Goal = Goal {
-    done: 1e-3,
+    done: 0.1,
     iterations: 8,
     largest: 1.0,
 };

@@ -251,7 +251,7 @@ impl TestFunction {
     }
 
     /// What its value is to be divided by to be of order one.
-    pub(super) fn size(self, at: &Spectrum) -> f64 {
+    pub(crate) fn size(self, at: &Spectrum) -> f64 {
         match self {
             TestFunction::Fold if at.dimension == 2 => 1.0 + at.volume.abs(),
             TestFunction::Fold | TestFunction::Doubling if at.dimension == 3 => {

@@ -25,11 +25,18 @@ pub(super) fn turns(from: &DirectedPoint, at: &DirectedPoint, to: &DirectedPoint
     most < ROUNDING || (!goes_on && at.abs() < part * most)
 }
 
-/// Whether the parameter turns on a step, and no multiplier passes 1: so it is where orbits meet their mirror images.
+/// Whether the parameter turns on a step along which a multiplier is near 1, and none passes it: so it is where orbits meet their mirror images.
 pub(super) fn turns_without_fold(from: &DirectedPoint, to: &DirectedPoint) -> bool {
+    /// Of the test function of folds: below this its sign is rounding.
+    const SMALL: f64 = 1e-6;
     let slopes = [from, to].map(|one| one.direction.parameters[FREE]);
-    let folds = [from, to].map(|one| TestFunction::Fold.of(&one.here.spectrum));
+    let folds = [from, to].map(|one| {
+        let spectrum = &one.here.spectrum;
+        TestFunction::Fold.of(spectrum) / TestFunction::Fold.size(spectrum)
+    });
     slopes[0] * slopes[1] < 0.0
         && slopes.iter().all(|slope| slope.abs() > ROUNDING)
         && folds[0] * folds[1] > 0.0
+        && folds.iter().all(|fold| fold.abs() > SMALL)
+        && [from, to].iter().all(|one| one.here.branches_nearby())
 }
